@@ -1,0 +1,44 @@
+"""The vocabulary of the flow: what passes from room to room, as frozen plain data.
+
+source → `View` → detectors → `Detection` → filtrations and network → `Hypothesis` → mapper
+→ `TopologicalMap` → store, exports, report.
+"""
+
+from afkb.flow.detection import Detection, OrientedBox
+from afkb.flow.hypothesis import Hypothesis, Relation
+from afkb.flow.sensing import LaserScan, PinholeCamera, SkippedFrame, View
+from afkb.flow.topological_map import (
+    Bound,
+    Closure,
+    Doorway,
+    Edge,
+    EdgeKind,
+    Entity,
+    NodeKind,
+    OccupancyGrid,
+    RobotPlace,
+    Room,
+    TopologicalMap,
+)
+
+__all__ = [
+    "Bound",
+    "Closure",
+    "Detection",
+    "Doorway",
+    "Edge",
+    "EdgeKind",
+    "Entity",
+    "Hypothesis",
+    "LaserScan",
+    "NodeKind",
+    "OccupancyGrid",
+    "OrientedBox",
+    "PinholeCamera",
+    "Relation",
+    "RobotPlace",
+    "Room",
+    "SkippedFrame",
+    "TopologicalMap",
+    "View",
+]

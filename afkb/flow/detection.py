@@ -1,0 +1,76 @@
+"""What a detector says about one view."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class OrientedBox:
+    """Upright box in the map frame: centre (m), full size along its own axes (m), yaw (rad)."""
+
+    center_xyz: tuple[float, float, float]
+    size_xyz: tuple[float, float, float]
+    yaw: float = 0.0
+
+    @property
+    def bottom(self) -> float:
+        """Height of its underside above the floor, m."""
+        return self.center_xyz[2] - self.size_xyz[2] / 2
+
+    @property
+    def top(self) -> float:
+        """Height of its upper side above the floor, m."""
+        return self.center_xyz[2] + self.size_xyz[2] / 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Detection:
+    """One affordance-bearing thing, surface or bound seen in one view, in the map frame.
+
+    - `affordances`: feature name (`SupportAbility`, …) to the probability that it affords it.
+    - `position_xyz`: of whatever affords support the centre of its upper surface, at its top;
+      of anything else the centre of its box (m).
+    - `covariance_xyz`: (3, 3) m², of `position_xyz`.
+    - `footprint_xy`: (N, 2) float64, m: points of the upper surface (or of the thing, seen from
+      above), about 0.02 m apart; what partial views merge by.
+    - `segment_xy`: (2, 2) m, end points of a bound (wall) on the floor plane; else None.
+    - `n_pixels`, `image_box` (u0, v0, u1, v1, half-open): the evidence in the image; a laser
+      bound counts beams and has no image box.
+    - `cut_by_image`: the image edge cuts it, so its extent is a lower bound.
+    - `extent_known`: False where the sensor returns too little to tell how far it reaches
+      (glossy or black tops); position is then that of the part that was seen.
+    - `range_m`: distance from the sensor to the nearest part, m.
+    """
+
+    detector: str
+    affordances: Mapping[str, float]
+    box: OrientedBox
+    position_xyz: NDArray[np.float64]
+    covariance_xyz: NDArray[np.float64]
+    footprint_xy: NDArray[np.float64]
+    n_pixels: int
+    range_m: float
+    image_box: tuple[int, int, int, int] | None = None
+    segment_xy: NDArray[np.float64] | None = None
+    cut_by_image: bool = False
+    extent_known: bool = True
+    measures: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.affordances:
+            raise ValueError(f"{self.detector}: a detection affords something")
+        for name, p in self.affordances.items():
+            if not (math.isfinite(p) and 0 <= p <= 1):
+                raise ValueError(f"{self.detector}: {name} has probability {p}, not in 0..1")
+        if self.position_xyz.shape != (3,) or not np.isfinite(self.position_xyz).all():
+            raise ValueError(f"{self.detector}: position {self.position_xyz} is not a finite (3,)")
+
+    def affords(self, feature: str, at_least: float = 0.5) -> bool:
+        """Whether it affords the feature with at least that probability."""
+        return self.affordances.get(feature, 0.0) >= at_least

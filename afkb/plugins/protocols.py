@@ -1,0 +1,103 @@
+"""What a plugin hands over: the shapes that sources, detectors, predictors … must have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import Detection, Hypothesis, SkippedFrame, TopologicalMap, View
+
+
+@runtime_checkable
+class Source(Protocol):
+    """A recording: lazy, and readable any number of times with the same result.
+
+    - `uri`: what it was opened from. `gravity_aligned`: whether z of its pose frame is up.
+    - `len(source)`: number of frames, bad ones included.
+    """
+
+    uri: str
+    gravity_aligned: bool
+
+    def __len__(self) -> int: ...
+
+    def views(
+        self, start: int = 0, stop: int | None = None, stride: int = 1
+    ) -> Iterator[View | SkippedFrame]:
+        """Frames `start, start + stride, … < stop`, each a `View` or why it is not one."""
+        ...
+
+
+@runtime_checkable
+class Detector(Protocol):
+    """Grounds affordance features in a view (paper §II.A, symbol grounding).
+
+    - `name`: unique; what `--detector` takes. `affordances`: names of the features it can report.
+    - `stage`: 0 for what stands by itself (supports, bounds), 1 for what needs stage 0 (things on
+      supports): coarse before fine, as the filtrations go.
+    """
+
+    name: str
+    affordances: tuple[str, ...]
+    stage: int
+
+    def detect(self, view: View, earlier: Sequence[Detection]) -> Sequence[Detection]:
+        """What it sees in a placed view; `earlier` holds this view's detections of lower stages."""
+        ...
+
+
+@runtime_checkable
+class Predictor(Protocol):
+    """Says what follows from what was seen, symbolically (paper §II.D.ii and iii)."""
+
+    name: str
+    order: int
+
+    def predict(self, detections: Sequence[Detection]) -> Sequence[Hypothesis]:
+        """Hypotheses from one view's detections; anchors are indexes into them."""
+        ...
+
+
+@runtime_checkable
+class Mapper(Protocol):
+    """Turns the flow into a map, one viewpoint at a time (paper Algorithm 1)."""
+
+    def add(
+        self, view: View, detections: Sequence[Detection], hypotheses: Sequence[Hypothesis]
+    ) -> None:
+        """Take in one placed view with what was detected in it and what follows."""
+        ...
+
+    def finish(self, T_map_source: NDArray[np.float64]) -> TopologicalMap:
+        """The map of what was added so far; more may be added afterwards."""
+        ...
+
+
+@runtime_checkable
+class MapperFactory(Protocol):
+    """Makes a fresh mapper; `name` is what `--mapper` takes, `rule` what `--rule` takes."""
+
+    name: str
+
+    def __call__(self, rule: str) -> Mapper: ...
+
+
+@runtime_checkable
+class Exporter(Protocol):
+    """Writes a map in some format.
+
+    `in_map_folder`: part of every map folder (nav2 grid, report), not only of `afkb export`.
+    """
+
+    name: str
+    in_map_folder: bool
+
+    def export(
+        self, topological_map: TopologicalMap, folder: Path, run: Mapping[str, object]
+    ) -> Sequence[Path]:
+        """Write into an existing folder; return the files written. `run` is run.json's content."""
+        ...
