@@ -1,0 +1,51 @@
+"""Small rigid-body and camera geometry that mapping and plugins share."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import PinholeCamera
+
+
+def back_project(
+    depth_m: NDArray[np.float32], camera: PinholeCamera
+) -> NDArray[np.float32]:
+    """Points of a depth image: (H, W, 3) float32, camera optical frame, m; NaN where no return."""
+    z = np.where(depth_m > 0, depth_m, np.nan).astype(np.float32)
+    u = ((np.arange(camera.width) - camera.cx) / camera.fx).astype(np.float32)
+    v = ((np.arange(camera.height) - camera.cy) / camera.fy).astype(np.float32)
+    return np.stack([z * u[None, :], z * v[:, None], z], axis=-1)
+
+
+def transform(T_a_b: NDArray[np.float64], points_b: NDArray[np.floating]) -> NDArray[np.floating]:
+    """Points (..., 3) of frame b in frame a, in the precision they came in."""
+    R, t = T_a_b[:3, :3].astype(points_b.dtype), T_a_b[:3, 3].astype(points_b.dtype)
+    moved: NDArray[np.floating] = points_b @ R.T + t
+    return moved
+
+
+def transform_xy(T_a_b: NDArray[np.float64], points_xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (N, 2) on frame b's z = 0 plane, seen from above in frame a."""
+    moved: NDArray[np.float64] = points_xy @ T_a_b[:2, :2].T + T_a_b[:2, 3]
+    return moved
+
+
+def yaw_of(T: NDArray[np.float64]) -> float:
+    """Heading of a frame's x axis about z, rad."""
+    return math.atan2(T[1, 0], T[0, 0])
+
+
+def wrap_angle(angle: float) -> float:
+    """The same angle in (-pi, pi]."""
+    return math.pi - (math.pi - angle) % (2 * math.pi)
+
+
+def T_from_xy_yaw(x: float, y: float, yaw: float) -> NDArray[np.float64]:
+    """Planar pose as a 4x4 transform, m and rad."""
+    T = np.eye(4)
+    T[:2, :2] = [[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]]
+    T[:2, 3] = x, y
+    return T
