@@ -1,0 +1,1 @@
+"""Brings the built-in mapper and the commands that need geometry."""

@@ -1,0 +1,1 @@
+"""Source: CARMEN logs of laser scans and odometry."""

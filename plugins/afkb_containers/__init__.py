@@ -1,0 +1,1 @@
+"""Detector: open and closed containers that stand on a support."""

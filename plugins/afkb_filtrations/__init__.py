@@ -1,0 +1,1 @@
+"""Predictors: affordance duals and co-occurrences, compiled from the ontology."""

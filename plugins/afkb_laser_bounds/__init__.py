@@ -1,0 +1,1 @@
+"""Detector: bounds (walls) as line segments in laser scans."""

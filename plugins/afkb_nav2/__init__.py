@@ -1,0 +1,1 @@
+"""Exporter: occupancy grid for nav2's map_server."""

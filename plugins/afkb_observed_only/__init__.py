@@ -1,0 +1,1 @@
+"""Mapper: a plain topological map of what was seen, without predictions."""

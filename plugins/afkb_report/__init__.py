@@ -1,0 +1,1 @@
+"""Exporter: report.html, the map as one self-contained page."""

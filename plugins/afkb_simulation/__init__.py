@@ -1,0 +1,1 @@
+"""Source: a simulated world, ray-cast."""

@@ -1,0 +1,1 @@
+"""Detector: horizontal and vertical surfaces in depth."""
