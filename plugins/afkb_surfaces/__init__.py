@@ -1,1 +1,21 @@
 """Detector: horizontal and vertical surfaces in depth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from afkb.plugins import hookimpl
+
+if TYPE_CHECKING:
+    from afkb.knowledge import KnowledgeBase
+    from afkb.plugins.protocols import Detector
+
+
+@hookimpl
+def afkb_detectors(knowledge_base: KnowledgeBase) -> Iterable[Detector]:
+    """The surface detector, with the knowledge base's limits for supports and bounds."""
+    from afkb_surfaces.detector import SurfaceDetector
+    from afkb_surfaces.settings import SurfaceSettings
+
+    return [SurfaceDetector(SurfaceSettings.from_knowledge(knowledge_base))]

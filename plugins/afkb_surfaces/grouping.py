@@ -1,0 +1,128 @@
+"""Cells to surfaces, and surfaces back to pixels."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from afkb_surfaces.cells import CELL, COUNT, DEPTH, NX, NZ, SIGMA_TILT, A, B, C, X, Z
+from afkb_surfaces.noise import depth_sigma
+
+NONE, FLOOR, SUPPORT, UPRIGHT = 0, 1, 2, 3
+
+
+@njit(cache=True)
+def classify(
+    cells: NDArray[np.float64], tilt_rad: float, upright_rad: float, floor_m: float
+) -> NDArray[np.int8]:
+    """Kind of each cell: floor, upward-facing, upright, or none of these."""
+    rows, cols = cells.shape[:2]
+    kinds = np.zeros((rows, cols), np.int8)
+    for r in range(rows):
+        for c in range(cols):
+            cell = cells[r, c]
+            if cell[COUNT] == 0:
+                continue
+            slack = min(2.0 * cell[SIGMA_TILT], 0.35)
+            tilt = np.arccos(min(max(cell[NZ], -1.0), 1.0))
+            if tilt < tilt_rad + slack:
+                near_floor = abs(cell[Z]) < floor_m + 2.0 * depth_sigma(cell[DEPTH]) * 0.35
+                kinds[r, c] = FLOOR if near_floor else SUPPORT
+            elif abs(tilt - 0.5 * np.pi) < upright_rad + min(slack, 0.17):
+                kinds[r, c] = UPRIGHT
+    return kinds
+
+
+@njit(cache=True)
+def _one_surface(
+    p: NDArray[np.float64], q: NDArray[np.float64], kind: int, step_m: float
+) -> bool:
+    """Whether two neighbouring cells of a kind lie on one surface."""
+    tolerance = step_m + depth_sigma(p[DEPTH])
+    forth = back = 0.0
+    for k in range(3):
+        d = q[X + k] - p[X + k]
+        forth += d * p[NX + k]
+        back += d * q[NX + k]
+    if kind == UPRIGHT:
+        dot = p[NX] * q[NX] + p[NX + 1] * q[NX + 1] + p[NZ] * q[NZ]
+        return dot > 0.9 and min(abs(forth), abs(back)) < tolerance
+    return min(abs(q[Z] - p[Z]), max(abs(forth), abs(back))) < tolerance
+
+
+@njit(cache=True)
+def grow(
+    cells: NDArray[np.float64], kinds: NDArray[np.int8], step_m: float
+) -> tuple[NDArray[np.int32], int]:
+    """Connected cells of one surface: labels (rows, cols) from 1, and their number.
+
+    The floor is always label 1, whether it is seen or not.
+    """
+    rows, cols = kinds.shape
+    labels = np.zeros((rows, cols), np.int32)
+    stack = np.empty((rows * cols, 2), np.int32)
+    count = 1
+    for r0 in range(rows):
+        for c0 in range(cols):
+            kind = kinds[r0, c0]
+            if kind == FLOOR:
+                labels[r0, c0] = 1
+            if kind < SUPPORT or labels[r0, c0] > 0:
+                continue
+            count += 1
+            labels[r0, c0] = count
+            stack[0, 0], stack[0, 1] = r0, c0
+            top = 1
+            while top > 0:
+                top -= 1
+                r, c = stack[top, 0], stack[top, 1]
+                for dr, dc in ((0, 1), (1, 0), (0, -1), (-1, 0)):
+                    i, j = r + dr, c + dc
+                    if not (0 <= i < rows and 0 <= j < cols):
+                        continue
+                    if labels[i, j] != 0 or kinds[i, j] != kind:
+                        continue
+                    if _one_surface(cells[r, c], cells[i, j], kind, step_m):
+                        labels[i, j] = count
+                        stack[top, 0], stack[top, 1] = i, j
+                        top += 1
+    return labels, count
+
+
+@njit(cache=True)
+def pixel_labels(
+    depth_m: NDArray[np.float32],
+    cells: NDArray[np.float64],
+    labels: NDArray[np.int32],
+    softness_m: float,
+) -> NDArray[np.int32]:
+    """Label of each pixel that lies on the plane of its cell, or of a cell next to it: (H, W)."""
+    height, width = depth_m.shape
+    rows, cols = labels.shape
+    out = np.zeros((height, width), np.int32)
+    for v in range(height):
+        r = min(v // CELL, rows - 1)
+        for u in range(width):
+            z = depth_m[v, u]
+            if z <= 0:
+                continue
+            c = min(u // CELL, cols - 1)
+            tolerance = 2.5 * depth_sigma(z) + softness_m
+            w = 1.0 / z
+            here = labels[r, c]
+            if here > 0:
+                p = cells[r, c]
+                if abs(p[A] * u + p[B] * v + p[C] - w) * z * z < tolerance:
+                    out[v, u] = here
+                    continue
+            best = tolerance
+            for i in range(max(r - 1, 0), min(r + 2, rows)):
+                for j in range(max(c - 1, 0), min(c + 2, cols)):
+                    if labels[i, j] > 0:
+                        p = cells[i, j]
+                        off = abs(p[A] * u + p[B] * v + p[C] - w) * z * z
+                        if off < best:
+                            best = off
+                            out[v, u] = labels[i, j]
+    return out

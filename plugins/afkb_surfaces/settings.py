@@ -1,0 +1,69 @@
+"""What counts as a surface: physical limits, read from the ontology where it states them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from afkb.knowledge import KnowledgeBase
+
+Limits = tuple[float, float, float, float]
+"""Trapezoid (z1, n1, n2, z2): impossible outside z1..z2, fully so between n1 and n2."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceSettings:
+    """Limits of the surface detector; lengths in m, angles in degrees.
+
+    - `normal_to_up_deg`, `area_m2`: of what supports; `bound_height_m`: of what blocks.
+    - `floor_m`: heights below this are the floor, carpets and thresholds included.
+    - `softness_m`: how far a cushion or blanket strays from a plane within one 12 px window.
+    - `step_m`: height step between neighbouring cells that still is one surface.
+    - `gap_m`: parts of one surface that something in front keeps this far apart are one.
+    """
+
+    normal_to_up_deg: Limits = (-1.0, 0.0, 15.0, 30.0)
+    area_m2: Limits = (0.015, 0.06, math.inf, math.inf)
+    bound_height_m: Limits = (0.6, 1.0, math.inf, math.inf)
+    floor_m: float = 0.05
+    softness_m: float = 0.004
+    step_m: float = 0.010
+    gap_m: float = 0.35
+    bound_area_m2: float = 0.10
+    footprint_step_m: float = 0.02
+
+    @classmethod
+    def from_knowledge(cls, knowledge_base: KnowledgeBase) -> SurfaceSettings:
+        """The limits that the features state in the ontology; what they leave out stays."""
+        support = _parameters(knowledge_base, "SupportAbility")
+        block = _parameters(knowledge_base, "BlockAbility")
+        base = cls()
+        return cls(
+            normal_to_up_deg=support.get("normal_to_up_deg", base.normal_to_up_deg),
+            area_m2=support.get("area_m2", base.area_m2),
+            bound_height_m=block.get("height_m", base.bound_height_m),
+        )
+
+
+def _parameters(knowledge_base: KnowledgeBase, feature: str) -> Mapping[str, Limits]:
+    found = knowledge_base.features.get(feature)
+    if found is None:
+        return {}
+    return {name: (t.z1, t.n1, t.n2, t.z2) for name, t in found.parameters.items()}
+
+
+def membership(value: float, limits: Limits) -> float:
+    """Degree, 0 to 1, to which a value lies within a trapezoid.
+
+    >>> membership(0.8, (0.6, 1.0, 2.0, 3.0))
+    0.5
+    """
+    z1, n1, n2, z2 = limits
+    if value <= z1 or value >= z2:
+        return 1.0 if n1 <= value <= n2 else 0.0
+    if value < n1:
+        return (value - z1) / (n1 - z1)
+    return 1.0 if value <= n2 else (z2 - value) / (z2 - n2)
