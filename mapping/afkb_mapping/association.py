@@ -1,0 +1,176 @@
+"""Decides which detections are of one thing: v_ao ~ v_ao over views (paper Algorithm 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from afkb.flow import Detection, View
+from afkb_mapping.footprint import Footprint
+from afkb_mapping.tracks import SURFACE_CELL_M, THING_CELL_M, ObservedTrack
+
+SURFACE_REACH_M = 0.08
+"""Parts of one surface lie at most this far apart: two cells, or what a pose may be off."""
+SURFACE_HEIGHT_M = 0.03
+"""Parts of one surface agree in height within this and twice the measurement's deviation."""
+THING_REACH_M = 0.06
+THING_HEIGHT_M = 0.06
+FAR_M = 1e3
+
+
+class Association:
+    """Keeps the observed tracks, and matches each view's detections to them."""
+
+    def __init__(self, new_id: Callable[[str], str]) -> None:
+        self.tracks: list[ObservedTrack] = []
+        self.births = self.merges = 0
+        self._new_id = new_id
+        self._merged_into: dict[str, str] = {}
+
+    def match(self, view: View, detections: Sequence[Detection]) -> list[ObservedTrack | None]:
+        """The track of each detection (new where it is new); None for bounds."""
+        found: list[ObservedTrack | None] = [None] * len(detections)
+        things = []
+        for i, detection in enumerate(detections):
+            if detection.segment_xy is not None:
+                continue
+            if _is_surface(detection):
+                found[i] = self._see(view, detection, self._surface_track(detection))
+            else:
+                things.append(i)
+        for i, track in zip(things, self._thing_tracks([detections[i] for i in things]), strict=True):
+            found[i] = self._see(view, detections[i], track)
+        return [self._survivor(t) for t in found]
+
+    def _survivor(self, track: ObservedTrack | None) -> ObservedTrack | None:
+        """A track that was merged away during this view lives on in the one that took it over."""
+        if track is None or track in self.tracks:
+            return track
+        return next(t for t in self.tracks if t.id == self._merged_into[track.id])
+
+    def _see(
+        self, view: View, detection: Detection, track: ObservedTrack | None
+    ) -> ObservedTrack:
+        if track is None:
+            track = self._birth(detection)
+        eye = view.T_map_camera if view.depth_m is not None else view.T_map_laser
+        track.see(detection, view.index, view.stamp, eye[:2, 3])
+        return track
+
+    def _birth(self, detection: Detection) -> ObservedTrack:
+        surface = _is_surface(detection)
+        track = ObservedTrack(
+            id=self._new_id("surface" if surface else "thing"),
+            is_surface=surface,
+            footprint=Footprint(SURFACE_CELL_M if surface else THING_CELL_M),
+            is_floor=_is_floor(detection),
+        )
+        self.tracks.append(track)
+        self.births += 1
+        return track
+
+    def _surface_track(self, detection: Detection) -> ObservedTrack | None:
+        if _is_floor(detection):
+            return next((t for t in self.tracks if t.is_floor), None)
+        deviation = float(np.sqrt(max(detection.covariance_xyz[2, 2], 0.0)))
+        near = []
+        for track in self.tracks:
+            if not track.is_surface or track.is_floor:
+                continue
+            if abs(track.top.value - detection.position_xyz[2]) > SURFACE_HEIGHT_M + 2 * deviation:
+                continue
+            share = track.footprint.share_within(detection.footprint_xy, SURFACE_REACH_M)
+            if share > 0:
+                near.append((share, track))
+        near.sort(key=lambda pair: (-pair[0], pair[1].id))
+        return self._merged([track for _, track in near])
+
+    def _merged(self, tracks: Sequence[ObservedTrack]) -> ObservedTrack | None:
+        """One track of several that a new view has bridged: the oldest takes over the others."""
+        if not tracks:
+            return None
+        keeper = min(tracks, key=self.tracks.index)
+        for other in tracks:
+            if other is not keeper:
+                self._absorb(keeper, other)
+        return keeper
+
+    def _absorb(self, keeper: ObservedTrack, other: ObservedTrack) -> None:
+        keeper.absorb(other)
+        self.tracks.remove(other)
+        for gone, into in list(self._merged_into.items()):
+            if into == other.id:
+                self._merged_into[gone] = keeper.id
+        self._merged_into[other.id] = keeper.id
+        self.merges += 1
+
+    def _thing_tracks(self, detections: Sequence[Detection]) -> list[ObservedTrack | None]:
+        """Best one-to-one matching of one view's things to the known ones (Hungarian method)."""
+        tracks = [t for t in self.tracks if not t.is_surface]
+        if not tracks or not detections:
+            return [None] * len(detections)
+        cost = np.array([[_distance(t, d) for t in tracks] for d in detections])
+        rows, columns = linear_sum_assignment(cost)
+        found: list[ObservedTrack | None] = [None] * len(detections)
+        for row, column in zip(rows, columns, strict=True):
+            if cost[row, column] < FAR_M:
+                found[row] = tracks[column]
+        return found
+
+    def merge_doubles(self) -> None:
+        """Merge things that views from different sides have grown into the same place."""
+        things = [t for t in self.tracks if not t.is_surface]
+        for i, first in enumerate(things):
+            for second in things[i + 1 :]:
+                if first in self.tracks and second in self.tracks and _same_thing(first, second):
+                    self._absorb(first, second)
+
+
+def _is_surface(detection: Detection) -> bool:
+    return detection.affords("SupportAbility")
+
+
+def _is_floor(detection: Detection) -> bool:
+    return bool(detection.measures.get("is_floor", 0.0))
+
+
+def _overlap_in_height(track: ObservedTrack, bottom: float, top: float) -> bool:
+    return (
+        abs(track.top.value - top) < THING_HEIGHT_M
+        or abs(track.bottom.value - bottom) < THING_HEIGHT_M
+    ) and min(track.top.value, top) > max(track.bottom.value, bottom) - THING_HEIGHT_M / 2
+
+
+def _distance(track: ObservedTrack, detection: Detection) -> float:
+    """Distance of the centres (m) if both may be one thing, else FAR_M."""
+    box = detection.box
+    center = np.asarray(box.center_xyz[:2])
+    outline = _center_of(track.footprint)
+    apart = float(np.hypot(*(center - outline)))
+    extent = max(box.size_xyz[:2])
+    gate = THING_REACH_M + 0.25 * extent + 2 * float(np.sqrt(detection.covariance_xyz[0, 0]))
+    if apart > max(gate, 0.5 * extent) or not _overlap_in_height(track, box.bottom, box.top):
+        return FAR_M
+    shared = track.footprint.share_within(detection.footprint_xy, THING_CELL_M)
+    if apart > THING_REACH_M and shared < 0.3:
+        return FAR_M
+    return apart * (1.5 - shared)
+
+
+def _center_of(footprint: Footprint) -> NDArray[np.float64]:
+    points = footprint.points()
+    middle: NDArray[np.float64] = (points.min(axis=0) + points.max(axis=0)) / 2
+    return middle
+
+
+def _same_thing(first: ObservedTrack, second: ObservedTrack) -> bool:
+    if not _overlap_in_height(first, second.bottom.value, second.top.value):
+        return False
+    shared = max(
+        first.footprint.share_within(second.footprint.points(), THING_CELL_M),
+        second.footprint.share_within(first.footprint.points(), THING_CELL_M),
+    )
+    return shared > 0.5

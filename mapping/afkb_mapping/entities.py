@@ -1,0 +1,173 @@
+"""Tracks as the map states them: entities with box, affordances, beliefs and support."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+
+import numpy as np
+
+from afkb.flow import Entity, NodeKind
+from afkb.inference import Network
+from afkb_mapping.footprint import Outline
+from afkb_mapping.tracks import ObservedTrack, PredictedTrack
+
+EXISTS_FROM = 0.5
+SUSTAINED = 0.8
+"""A thing seen in one view only is kept if that view was this sure of it."""
+SMALLEST_SURFACE_M2 = 0.02
+STANDS_WITHIN_M = 0.06
+"""A thing's foot and the surface it stands on agree within this: noise of both."""
+FOOT_HIDDEN_M = 0.20
+SURFACE_THICKNESS_M = 0.02
+
+
+def observed_entities(tracks: Sequence[ObservedTrack], network: Network) -> list[Entity]:
+    """Entities (V_ao) of the tracks that are sure enough, in order of discovery."""
+    kept = [t for t in tracks if _is_kept(t)]
+    things = [t for t in kept if not t.is_surface]
+    kept = [t for t in kept if not (t.is_surface and _is_part_of_thing(t, things))]
+    outlines = {t.id: t.footprint.outline() for t in kept}
+    surfaces = [t for t in kept if t.is_surface]
+    known = {t.id for t in kept}
+    return [
+        _observed(t, outlines[t.id], _support_of(t, surfaces), known, network)
+        for t in kept
+        if t.is_floor or not t.is_surface or outlines[t.id].area_m2 >= SMALLEST_SURFACE_M2
+    ]
+
+
+def _is_kept(track: ObservedTrack) -> bool:
+    if track.existence < EXISTS_FROM or not track.footprint:
+        return False
+    return track.observations > 1 or track.existence >= SUSTAINED
+
+
+def _is_part_of_thing(surface: ObservedTrack, things: Iterable[ObservedTrack]) -> bool:
+    """Whether a small surface is a thing's own lid or inside: one thing is one node."""
+    points = surface.footprint.points()
+    return any(
+        thing.bottom.value < surface.top.value <= thing.top.value + STANDS_WITHIN_M
+        and thing.footprint.share_within(points, surface.footprint.cell_m) > 0.7
+        for thing in things
+    )
+
+
+def _support_of(track: ObservedTrack, surfaces: Iterable[ObservedTrack]) -> str | None:
+    """The surface right below a thing, by outline and height; the floor by height alone, since
+    what stands on it hides it."""
+    if track.is_surface:
+        return None
+    if track.bottom.value <= STANDS_WITHIN_M:
+        return next((s.id for s in surfaces if s.is_floor), None)
+    points = track.footprint.points()
+    best: tuple[float, str] | None = None
+    for surface in surfaces:
+        gap = track.bottom.value - surface.top.value
+        if not -STANDS_WITHIN_M <= gap <= FOOT_HIDDEN_M:
+            continue
+        on_it = surface.footprint.share_within(points, 2 * surface.footprint.cell_m)
+        if on_it > 0.3 and (best is None or abs(gap) < best[0]):
+            best = abs(gap), surface.id
+    return best[1] if best else None
+
+
+def _observed(
+    track: ObservedTrack,
+    outline: Outline,
+    support: str | None,
+    known: Collection[str],
+    network: Network,
+) -> Entity:
+    top = 0.0 if track.is_floor else track.top.value
+    bottom = top - SURFACE_THICKNESS_M if track.is_surface else min(track.bottom.value, top)
+    size = (*outline.size_xy, top - bottom)
+    z = top if track.is_surface else (top + bottom) / 2
+    affordances = track.affordances
+    belief = {"Floor": 1.0} if track.is_floor else network.category_posterior(affordances, size, top)
+    movability, weight = ("Static", 1.0) if track.is_floor else network.movability(belief)
+    return Entity(
+        id=track.id,
+        kind=NodeKind.OBSERVED,
+        position_xyz=(*outline.center_xy, z),
+        size_xyz=size,
+        yaw=outline.yaw,
+        affordances=affordances,
+        existence=track.existence,
+        category_belief=belief,
+        movability=movability,
+        matching_weight=weight,
+        observations=track.observations,
+        first_seen=track.first_seen,
+        last_seen=track.last_seen,
+        seen_from=tuple(track.places),
+        generated_by=tuple(track.detectors),
+        supported_by=support,
+        predicted_from=tuple(i for i in track.predicted_from if i in known),
+        predicted_first=track.predicted_first,
+        axioms=tuple(track.axioms),
+        extent_known=track.extent_known,
+        polygon_xy=outline.polygon_xy,
+        evidence=tuple(track.evidence),
+    )
+
+
+def predicted_entities(
+    predictions: Iterable[PredictedTrack], network: Network, known: Collection[str]
+) -> list[Entity]:
+    """Entities (V_ap, V_ac) of predictions whose anchors are still in the map."""
+    entities = []
+    for track in predictions:
+        anchors = tuple(a for a in track.anchors if a in known)
+        if anchors:
+            entities.append(_predicted(track, anchors, network))
+    return entities
+
+
+def supports_expected(predictions: Iterable[PredictedTrack]) -> dict[str, str]:
+    """Thing to the unseen support that it follows from: id to id."""
+    return {
+        anchor: track.id
+        for track in predictions
+        if track.kind is NodeKind.DUAL and "SupportAbility" in track.affordances
+        for anchor in track.anchors
+    }
+
+
+def _predicted(track: PredictedTrack, anchors: tuple[str, ...], network: Network) -> Entity:
+    x, y = (float(v) for v in track.center_xy)
+    width, depth = (float(v) for v in track.size_xy)
+    top = sum(track.top_range_m) / 2 if track.kind is NodeKind.CO_OCCURRENCE else (
+        track.top_range_m[1]
+    )
+    size = (width, depth, SURFACE_THICKNESS_M)
+    belief = track.categories or network.category_posterior(track.affordances, size, top)
+    movability, weight = network.movability(belief)
+    polygon = np.array(
+        [
+            track.low_xy,
+            [track.high_xy[0], track.low_xy[1]],
+            track.high_xy,
+            [track.low_xy[0], track.high_xy[1]],
+        ]
+    )
+    return Entity(
+        id=track.id,
+        kind=track.kind,
+        position_xyz=(x, y, top),
+        size_xyz=size,
+        yaw=0.0,
+        affordances=track.affordances,
+        existence=track.probability,
+        category_belief=belief,
+        movability=movability,
+        matching_weight=weight,
+        observations=track.observations,
+        first_seen=track.first_seen,
+        last_seen=track.last_seen,
+        seen_from=tuple(track.places),
+        generated_by=(track.predictor,),
+        predicted_from=anchors,
+        axioms=tuple(track.axioms),
+        extent_known=False,
+        polygon_xy=polygon,
+    )

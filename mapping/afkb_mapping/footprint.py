@@ -1,0 +1,127 @@
+"""Where a thing is, seen from above: cells with how often each was seen, so that views merge."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+SEEN_SHARE = 0.1
+"""A cell belongs to the outline if it was seen this often, relative to the well-seen cells:
+stray points of single frames lie below, whatever the number of frames."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outline:
+    """Oriented rectangle and polygon around a footprint: map frame, m and rad; size x ≥ size y."""
+
+    center_xy: tuple[float, float]
+    size_xy: tuple[float, float]
+    yaw: float
+    polygon_xy: NDArray[np.float64]
+    area_m2: float
+
+
+class Footprint:
+    """A growing raster of cells `cell_m` wide, aligned with the map frame's axes."""
+
+    def __init__(self, cell_m: float) -> None:
+        self.cell_m = cell_m
+        self._low = np.zeros(2, dtype=np.int64)
+        self._hits = np.zeros((0, 0), dtype=np.uint16)
+
+    def __bool__(self) -> bool:
+        return bool(self._hits.any())
+
+    def _cells(self, points_xy: NDArray[np.float64]) -> NDArray[np.int64]:
+        return np.unique(np.floor(points_xy / self.cell_m).astype(np.int64), axis=0)
+
+    def _grow(self, low: NDArray[np.int64], high: NDArray[np.int64]) -> None:
+        if not self._hits.size:
+            self._low, self._hits = low, np.zeros(tuple(high - low + 1), dtype=np.uint16)
+            return
+        new_low = np.minimum(low, self._low)
+        new_high = np.maximum(high, self._low + self._hits.shape - 1)
+        before = self._low - new_low
+        after = new_high - (self._low + self._hits.shape - 1)
+        if before.any() or after.any():
+            self._hits = np.pad(self._hits, list(zip(before, after, strict=True)))
+            self._low = new_low
+
+    def add(self, points_xy: NDArray[np.float64]) -> None:
+        """Count one view's points (N, 2), each cell once."""
+        if not len(points_xy):
+            return
+        cells = self._cells(points_xy)
+        self._grow(cells.min(axis=0), cells.max(axis=0))
+        i, j = (cells - self._low).T
+        self._hits[i, j] = np.minimum(self._hits[i, j], 65534) + 1
+
+    def absorb(self, other: Footprint) -> None:
+        """Take over another footprint's counts."""
+        if not other._hits.size:
+            return
+        self._grow(other._low, other._low + other._hits.shape - 1)
+        i, j = other._low - self._low
+        n, m = other._hits.shape
+        self._hits[i : i + n, j : j + m] += other._hits
+
+    def mask(self, margin: int = 0) -> NDArray[np.uint8]:
+        """Cells that were seen often enough, with `margin` empty cells around."""
+        if not self._hits.any():
+            return np.zeros((1 + 2 * margin, 1 + 2 * margin), dtype=np.uint8)
+        well_seen = float(np.percentile(self._hits[self._hits > 0], 90))
+        mask = (self._hits >= max(1.0, math.ceil(SEEN_SHARE * well_seen))).astype(np.uint8)
+        return np.pad(mask, margin)
+
+    def share_within(self, points_xy: NDArray[np.float64], reach_m: float) -> float:
+        """Share of the points' cells that lie within `reach_m` of this footprint."""
+        if not self or not len(points_xy):
+            return 0.0
+        reach = math.ceil(reach_m / self.cell_m)
+        near = self.mask(reach)
+        if reach:
+            disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
+            near = cv2.dilate(near, disc)
+        cells = self._cells(points_xy) - self._low + reach
+        inside = ((cells >= 0) & (cells < near.shape)).all(axis=1)
+        i, j = cells[inside].T
+        return float(near[i, j].sum() / len(cells))
+
+    def points(self) -> NDArray[np.float64]:
+        """(N, 2) centres of its cells, m."""
+        cells: NDArray[np.float64] = (np.argwhere(self.mask()) + self._low + 0.5) * self.cell_m
+        return cells
+
+    def outline(self) -> Outline:
+        """Smallest rectangle and polygon around it, gaps up to a few cells closed."""
+        margin = 4
+        closed = cv2.morphologyEx(
+            self.mask(margin), cv2.MORPH_CLOSE, np.ones((2 * margin - 1,) * 2, dtype=np.uint8)
+        )
+        contours, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        if not contours:
+            raise ValueError("an empty footprint has no outline")
+        # cv2 calls our second index x; swap back, and grow half a cell to the cells' borders.
+        largest = max(contours, key=cv2.contourArea)[:, 0, ::-1]
+        corners = (largest - margin + self._low + 0.5) * self.cell_m
+        return _outline(corners, self.cell_m, float(closed.sum()) * self.cell_m**2)
+
+
+def _outline(corners: NDArray[np.float64], cell_m: float, area_m2: float) -> Outline:
+    (cx, cy), (width, height), angle = cv2.minAreaRect(corners.astype(np.float32))
+    yaw = math.radians(angle)
+    if width < height:
+        width, height, yaw = height, width, yaw + math.pi / 2
+    yaw = (yaw + math.pi / 2) % math.pi - math.pi / 2
+    simple = cv2.approxPolyDP(corners.astype(np.float32)[:, None], 0.75 * cell_m, True)[:, 0]
+    return Outline(
+        (float(cx), float(cy)),
+        (float(width) + cell_m, float(height) + cell_m),
+        yaw,
+        simple.astype(np.float64),
+        area_m2,
+    )

@@ -1,0 +1,209 @@
+"""Algorithm 1 of the paper: the topological affordance map, one viewpoint at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import count
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import Closure, Detection, Hypothesis, NodeKind, TopologicalMap, View
+from afkb.inference import Network
+from afkb.knowledge import KnowledgeBase
+from afkb_mapping.association import Association
+from afkb_mapping.bounds import BoundMerger
+from afkb_mapping.grounding import fits, ground, joined, same_prediction
+from afkb_mapping.occupancy import GridBuilder
+from afkb_mapping.places import Places
+from afkb_mapping.snapshot import MapContent, snapshot
+from afkb_mapping.tracks import ObservedTrack, PredictedTrack
+from afkb_mapping.update_rules import against, update_rule
+from afkb_mapping.visibility import look
+
+EMPTY_LIKELIHOOD_RATIO = 0.3
+"""Seeing through where a thing should be is this much likelier if it is gone than if it is there:
+a look misses a surface that is there in about a quarter of views (thin, dark, at the edge)."""
+LOOKED_AT_SHARE = 0.7
+GONE_BELOW = 0.2
+
+
+class Ids:
+    """Numbers nodes in order of discovery, so that the same input names them the same."""
+
+    def __init__(self) -> None:
+        self._count = count(1)
+
+    def __call__(self, kind: str) -> str:
+        return f"{kind}-{next(self._count)}"
+
+
+class AffordanceMapper:
+    """Builds G(V_r ∪ V_ao ∪ V_ap ∪ V_ac, E_d ∪ E_l) in an occupancy grid (paper §II.E)."""
+
+    def __init__(self, knowledge_base: KnowledgeBase, network: Network, rule: str) -> None:
+        self._knowledge_base = knowledge_base
+        self._network = network
+        self._rule = update_rule(rule)
+        self._new_id = Ids()
+        self._association = Association(self._new_id)
+        self._places = Places(self._new_id)
+        self._bounds = BoundMerger()
+        self._grid = GridBuilder()
+        self._predictions: list[PredictedTrack] = []
+        self._closures: list[Closure] = []
+        self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
+        self._refuted = 0
+
+    def add(
+        self, view: View, detections: Sequence[Detection], hypotheses: Sequence[Hypothesis]
+    ) -> None:
+        """One viewpoint k of Algorithm 1; `view` is placed in the map frame."""
+        self._enter(view)
+        observed = self._association.match(view, detections)  # v_ao
+        self._confirm(observed, view)  # v_ao ~ v_ap_m: p = 1, c = c_ao: loop closing
+        expected = self._expect(hypotheses, detections, observed, view)  # v_ap, v_ac
+        self._reinforce(expected, view)  # v_ap ~ v_ap_m: p rises, c = mean
+        self._look_for_missing(view, observed)
+        self._link(view, detections, observed, expected)  # V_r, E_d, E_l
+
+    def finish(self, T_map_source: NDArray[np.float64]) -> TopologicalMap:
+        """The map of what was added so far."""
+        self._association.merge_doubles()
+        content = MapContent(
+            knowledge_base=self._knowledge_base,
+            network=self._network,
+            tracks=self._association.tracks,
+            predictions=self._predictions,
+            places=self._places.places,
+            ways=list(self._places.ways),
+            bounds=self._bounds.bounds(),
+            grid=self._grid.grid(),
+            closures=self._closures,
+            trajectory=self._trajectory,
+            counts={
+                "births": self._association.births,
+                "merges": self._association.merges,
+                "refuted": self._refuted,
+            },
+        )
+        return snapshot(content, T_map_source)
+
+    def _enter(self, view: View) -> None:
+        assert view.T_map_base is not None
+        self._trajectory.append((view.stamp, view.T_map_base))
+        self._grid.insert(view)
+
+    def _confirm(self, observed: Sequence[ObservedTrack | None], view: View) -> None:
+        for track in dict.fromkeys(t for t in observed if t is not None):
+            for prediction in [p for p in self._predictions if fits(p, track)]:
+                self._close(prediction, track, view)
+
+    def _close(self, prediction: PredictedTrack, track: ObservedTrack, view: View) -> None:
+        """A prediction comes true: it gives way to the observed node that replaces it."""
+        outline = track.footprint.outline()
+        apart = np.hypot(*(prediction.center_xy - outline.center_xy))
+        current = self._places.current
+        self._closures.append(
+            Closure(
+                entity=track.id,
+                predicted_as=prediction.kind,
+                predicted_probability=prediction.probability,
+                displacement_m=float(apart),
+                place=current.id if current else "",
+                stamp=view.stamp,
+            )
+        )
+        track.predicted_first = track.predicted_first or prediction.kind
+        track.predicted_from.update(prediction.anchors)
+        track.axioms.update(prediction.axioms)
+        self._predictions.remove(prediction)
+
+    def _expect(
+        self,
+        hypotheses: Sequence[Hypothesis],
+        detections: Sequence[Detection],
+        observed: Sequence[ObservedTrack | None],
+        view: View,
+    ) -> list[PredictedTrack]:
+        """Hypotheses with a place in the map, without those that something seen already fulfils."""
+        expected = []
+        for hypothesis in hypotheses:
+            anchors = [t for i in hypothesis.anchors if (t := observed[i]) is not None]
+            if not anchors:
+                continue
+            hidden = not any("support_height" in detections[i].measures for i in hypothesis.anchors)
+            track = ground(hypothesis, anchors, hidden, view, self._grid.unknown, self._new_id)
+            if track is not None and not self._fulfilled(track):
+                expected.append(track)
+        return expected
+
+    def _fulfilled(self, prediction: PredictedTrack) -> bool:
+        return any(fits(prediction, track) for track in self._association.tracks)
+
+    def _reinforce(self, expected: list[PredictedTrack], view: View) -> None:
+        """Raise earlier predictions that this viewpoint makes again; add the new ones."""
+        for i, prediction in enumerate(expected):
+            old = next((p for p in self._predictions if same_prediction(p, prediction)), None)
+            if old is None:
+                prediction.viewpoints.is_new(_eye(view), prediction.center_xy)
+                self._predictions.append(prediction)
+                continue
+            if old.viewpoints.is_new(_eye(view), old.center_xy):
+                old.probability = self._rule(old.probability, prediction.probability)
+                old.observations += 1
+            joined(old, prediction)
+            expected[i] = old
+
+    def _look_for_missing(self, view: View, observed: Sequence[ObservedTrack | None]) -> None:
+        """What should be in view but is seen through counts against (the paper has no such term)."""
+        seen = {t.id for t in observed if t is not None}
+        for track in self._association.tracks:
+            if track.id not in seen and not track.is_floor and self._is_empty(view, _body(track)):
+                if track.empty_from.is_new(_eye(view), track.footprint.points().mean(axis=0)):
+                    track.existence = against(track.existence, EMPTY_LIKELIHOOD_RATIO)
+        for prediction in list(self._predictions):
+            if self._is_empty(view, prediction.sample_points()):
+                if prediction.empty_from.is_new(_eye(view), prediction.center_xy):
+                    prediction.probability = against(prediction.probability, EMPTY_LIKELIHOOD_RATIO)
+            if prediction.probability < GONE_BELOW:
+                self._predictions.remove(prediction)
+                self._refuted += 1
+
+    def _is_empty(self, view: View, points_xyz: NDArray[np.float64]) -> bool:
+        found = look(view, points_xyz)
+        return found.in_view >= LOOKED_AT_SHARE and found.empty >= LOOKED_AT_SHARE
+
+    def _link(
+        self,
+        view: View,
+        detections: Sequence[Detection],
+        observed: Sequence[ObservedTrack | None],
+        expected: Sequence[PredictedTrack],
+    ) -> None:
+        """Grow G_t: the place of this view, and what is linked to it."""
+        in_view = {t.id: None for t in observed if t is not None and not t.is_floor}
+        place = self._places.visit(view, in_view)
+        for track in observed:
+            if track is not None:
+                track.places[place.id] = None
+        for prediction in expected:
+            prediction.places[place.id] = None
+        for detection in detections:
+            if detection.segment_xy is not None:
+                self._bounds.add(detection, place.id)
+
+
+def _eye(view: View) -> NDArray[np.float64]:
+    eye: NDArray[np.float64] = (
+        view.T_map_camera if view.depth_m is not None else view.T_map_laser
+    )[:2, 3]
+    return eye
+
+
+def _body(track: ObservedTrack) -> NDArray[np.float64]:
+    """Points (N, 3) that a look at a thing meets first: its top, or its body at half height."""
+    xy = track.footprint.points()
+    z = track.top.value if track.is_surface else (track.top.value + track.bottom.value) / 2
+    thinned = xy[:: max(1, len(xy) // 200)]
+    return np.column_stack([thinned, np.full(len(thinned), z)])

@@ -1,0 +1,81 @@
+"""Robot places, V_r: a new one where the affordances in view change (paper §II.E)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from afkb.flow import View
+from afkb_mapping.geometry import yaw_of
+
+PLACE_SPACING_M = 1.0
+"""A robot that turns on the spot, or moves less than this, stays at its place."""
+FAMILIAR_SHARE = 0.5
+"""A view belongs to a place from which at least this share of its entities was already seen."""
+SAME_PLACE_M = 2.5
+"""Beyond this distance a view belongs to no earlier place, however much of it is familiar."""
+
+
+@dataclass(slots=True, eq=False)
+class Place:
+    """A node of V_r with what was seen from it (ids of entities)."""
+
+    id: str
+    x: float
+    y: float
+    yaw: float
+    stamp: float
+    view_index: int
+    seen: dict[str, None] = field(default_factory=dict)
+
+
+class Places:
+    """The places in order of discovery, the current one, and the ways taken between them."""
+
+    def __init__(self, new_id: Callable[[str], str]) -> None:
+        self.places: list[Place] = []
+        self.ways: dict[tuple[str, str], None] = {}
+        self.current: Place | None = None
+        self._new_id = new_id
+
+    def visit(self, view: View, entities: Collection[str]) -> Place:
+        """The place of a view in which these entities are: an earlier one, or a new one."""
+        assert view.T_map_base is not None
+        xy = view.T_map_base[:2, 3]
+        place = self._belongs_to(xy, set(entities))
+        if place is None:
+            place = self._new_place(view)
+        if self.current is not None and self.current is not place:
+            self.ways[(self.current.id, place.id)] = None
+        self.current = place
+        place.seen.update(dict.fromkeys(entities))
+        return place
+
+    def _belongs_to(self, xy: np.ndarray, entities: set[str]) -> Place | None:
+        if self.current is None:
+            return None
+        near = sorted(self.places, key=lambda p: float(np.hypot(p.x - xy[0], p.y - xy[1])))
+        nearest = near[0]
+        if np.hypot(nearest.x - xy[0], nearest.y - xy[1]) < PLACE_SPACING_M:
+            return nearest
+        if not entities:
+            return self.current
+        for place in near:
+            if np.hypot(place.x - xy[0], place.y - xy[1]) > SAME_PLACE_M:
+                break
+            if len(entities & place.seen.keys()) >= FAMILIAR_SHARE * len(entities):
+                return place
+        if len(entities & self.current.seen.keys()) >= FAMILIAR_SHARE * len(entities):
+            return self.current
+        return None
+
+    def _new_place(self, view: View) -> Place:
+        assert view.T_map_base is not None
+        T = view.T_map_base
+        place = Place(
+            self._new_id("place"), float(T[0, 3]), float(T[1, 3]), yaw_of(T), view.stamp, view.index
+        )
+        self.places.append(place)
+        return place

@@ -1,0 +1,173 @@
+"""Places each view in the map: odometry, corrected by matching its laser scan to the map so far.
+
+Planar (x, y, yaw): height, roll and pitch stay those of the levelled odometry. Local matching
+only; drift that is left after a long way round is for loop closing to mend (paper §II.E).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import View
+from afkb_mapping.coarse_search import candidates
+from afkb_mapping.geometry import T_from_xy_yaw, transform_xy, yaw_of
+from afkb_mapping.scan_matching import LocalMap, Match, agreement, refine, rotation
+from afkb_mapping.scan_surface import SurfaceMap, SurfacePoints, surface_of
+
+Array = NDArray[np.float64]
+
+ODOMETRY_SHIFT = (0.03, 0.10)
+"""Standard deviation of odometry's shift between views: m, and m per m travelled."""
+ODOMETRY_TURN = (0.02, 0.10, 0.03)
+"""Standard deviation of odometry's turn: rad, rad per rad turned, rad per m travelled."""
+MIN_POINTS = 20
+"""A scan with fewer surface points fixes no pose: the laser is blind here."""
+GOOD_OVERLAP = 0.5
+"""A match that explains this part of the scan needs no second opinion, and may be a jump away from
+odometry; below it, the coarse search is tried."""
+LEAST_OVERLAP = 0.15
+"""Where the robot enters a room little of a scan is known; this much, near odometry, will do."""
+MAX_DEVIATION = 3.0
+"""Standard deviations from odometry within which a match is believed without good overlap."""
+JUMP_GAIN = 0.15
+"""A jump away from odometry has to explain this much more of the scan than staying does."""
+NEW_GROUND = 0.25
+"""Where this part of a scan finds no surface within reach, it shows new ground, not a wrong pose."""
+REACH_M, REACH_RAD = 1.0, math.radians(30)
+"""Bounds of the coarse search: slip and collisions within one step of a recording."""
+LOST_VIEWS = 3
+"""After this many unmatched views in a row the map starts anew at the odometry's place."""
+RADIUS_M = 15.0
+"""Map within this distance of the robot takes part in a match, whatever the laser's range."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedPose:
+    """Where a view was taken.
+
+    - `T_map_base`: 4x4, base in the map frame. `covariance`: (3, 3) of x, y (m), yaw (rad).
+    - `matched`: a scan fixed it; else it is odometry's. `overlap`: fraction of the scan's surface
+      that lies on the map's.
+    """
+
+    T_map_base: Array
+    covariance: Array
+    matched: bool
+    overlap: float
+
+
+class ScanRegistration:
+    """Places views one after another; the first one defines the map frame.
+
+    `T_map_odom` takes the source's pose frame to the map frame at the first view (levelling).
+    """
+
+    def __init__(self, T_map_odom: Array) -> None:
+        self._T_map_odom = T_map_odom.astype(np.float64)
+        self._T_odom_base: Array | None = None
+        self._covariance = np.zeros((3, 3))
+        self._map = SurfaceMap()
+        self._unmatched = 0
+
+    def place(self, view: View) -> PlacedPose:
+        """Where the view was taken; its scan becomes part of the map that the next ones match."""
+        T_predicted = self._T_map_odom @ view.T_odom_base
+        drift = self._odometry_covariance(view.T_odom_base)
+        self._T_odom_base = view.T_odom_base
+        scan = _surface_in_map(view, T_predicted)
+        if len(scan) < MIN_POINTS:
+            self._covariance = self._covariance + drift
+            return PlacedPose(T_predicted, self._covariance, False, 0.0)
+        if not len(self._map):
+            self._map.add(scan)
+            return PlacedPose(T_predicted, self._covariance, True, 1.0)
+        return self._match(scan, T_predicted, drift)
+
+    def _odometry_covariance(self, T_odom_base: Array) -> Array:
+        """(3, 3) of the step since the last view."""
+        if self._T_odom_base is None:
+            return np.zeros((3, 3))
+        T_step = np.linalg.inv(self._T_odom_base) @ T_odom_base
+        length, turn = float(np.linalg.norm(T_step[:3, 3])), abs(yaw_of(T_step))
+        shift = ODOMETRY_SHIFT[0] + ODOMETRY_SHIFT[1] * length
+        yaw = ODOMETRY_TURN[0] + ODOMETRY_TURN[1] * turn + ODOMETRY_TURN[2] * length
+        return np.diag([shift**2, shift**2, yaw**2])
+
+    def _match(self, scan: SurfacePoints, T_predicted: Array, drift: Array) -> PlacedPose:
+        pivot = T_predicted[:2, 3].copy()
+        # While unmatched, odometry's errors add up; once matched, only the last step's count.
+        prior = drift if self._unmatched == 0 else drift + self._covariance
+        local_map = LocalMap(self._map.near(pivot, RADIUS_M))
+        match = self._best_match(scan, local_map, pivot, prior)
+        if match is None:
+            return self._go_on_by_odometry(scan, local_map, T_predicted, drift)
+        self._unmatched = 0
+        self._covariance = np.linalg.inv(match.information + np.linalg.inv(prior))
+        T_correction = _about(pivot, match.motion)
+        self._T_map_odom = T_correction @ self._T_map_odom
+        self._map.add(scan.moved(T_correction[:2, :2], T_correction[:2, 3]))
+        return PlacedPose(T_correction @ T_predicted, self._covariance, True, match.overlap)
+
+    def _best_match(
+        self, scan: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array
+    ) -> Match | None:
+        """The match from odometry's pose; where that explains little, the coarse search's best."""
+        information, nowhere = np.linalg.inv(prior), np.zeros(3)
+        near = refine(scan, local_map, pivot, nowhere, information, nowhere)
+        usual = _deviation(near, information) <= MAX_DEVIATION
+        if usual and near.overlap >= GOOD_OVERLAP:
+            return near
+        jump = _best_jump(scan, local_map, pivot, prior) if len(local_map.surface) else near
+        if jump.overlap >= max(GOOD_OVERLAP, near.overlap + JUMP_GAIN):
+            return jump
+        return near if usual and near.overlap >= LEAST_OVERLAP else None
+
+    def _go_on_by_odometry(
+        self, scan: SurfacePoints, local_map: LocalMap, T_predicted: Array, drift: Array
+    ) -> PlacedPose:
+        """Keep odometry's pose; take the scan in only where it can't double a wall, or if lost."""
+        self._unmatched += 1
+        self._covariance = self._covariance + drift
+        overlap, _ = agreement(scan, local_map)
+        _, found = local_map.nearest(scan, REACH_M)
+        if found.mean() < 1 - NEW_GROUND or self._unmatched > LOST_VIEWS:
+            self._map.add(scan)
+        return PlacedPose(T_predicted, self._covariance, False, overlap)
+
+
+def _best_jump(scan: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array) -> Match:
+    """The match that explains most, wherever the coarse search finds it."""
+    sigmas = np.sqrt(np.diag(prior))
+    map_points = local_map.surface.points_xy
+    starts = candidates(scan, map_points, pivot, REACH_M, REACH_RAD, sigmas)
+    loose = np.diag(1 / np.array([REACH_M, REACH_M, REACH_RAD]) ** 2)
+    return max(
+        (refine(scan, local_map, pivot, start, loose, start, (0.3, 0.15)) for start in starts),
+        key=lambda match: match.overlap,
+    )
+
+
+def _deviation(match: Match, information: Array) -> float:
+    """Mahalanobis distance of a match from odometry."""
+    return math.sqrt(float(match.motion @ information @ match.motion))
+
+
+def _surface_in_map(view: View, T_map_base: Array) -> SurfacePoints:
+    """The scan's surface, seen from above, were the base there; empty without a scan."""
+    if view.scan is None or view.T_base_laser is None:
+        return SurfacePoints(np.empty((0, 2)), np.empty((0, 2)))
+    surface = surface_of(view.scan)
+    T_map_laser = T_map_base @ view.T_base_laser
+    normals = surface.normals_xy @ T_map_laser[:2, :2].T
+    return SurfacePoints(transform_xy(T_map_laser, surface.points_xy), normals)
+
+
+def _about(pivot: Array, motion: Array) -> Array:
+    """4x4 planar transform that turns about the pivot by motion[2] and shifts by motion[:2]."""
+    T = T_from_xy_yaw(0.0, 0.0, float(motion[2]))
+    T[:2, 3] = pivot + motion[:2] - rotation(float(motion[2])) @ pivot
+    return T

@@ -1,0 +1,144 @@
+"""The map as it stands: tracks become entities, cells become rooms, and the graph gets its edges."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import (
+    Bound,
+    Closure,
+    Doorway,
+    Entity,
+    NodeKind,
+    OccupancyGrid,
+    RobotPlace,
+    Room,
+    TopologicalMap,
+)
+from afkb.inference import Network
+from afkb.knowledge import KnowledgeBase
+from afkb_mapping.edges import edges_of
+from afkb_mapping.entities import observed_entities, predicted_entities, supports_expected
+from afkb_mapping.occupancy import rasterise
+from afkb_mapping.places import Place
+from afkb_mapping.rooms import Segmentation, segment_rooms
+from afkb_mapping.tracks import ObservedTrack, PredictedTrack
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapContent:
+    """What a mapper knows when it is asked for the map."""
+
+    knowledge_base: KnowledgeBase
+    network: Network
+    tracks: Sequence[ObservedTrack]
+    predictions: Sequence[PredictedTrack]
+    places: Sequence[Place]
+    ways: Sequence[tuple[str, str]]
+    bounds: Sequence[Bound]
+    grid: OccupancyGrid
+    closures: Sequence[Closure]
+    trajectory: Sequence[tuple[float, NDArray[np.float64]]]
+    counts: Mapping[str, int]
+
+
+def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> TopologicalMap:
+    """The `TopologicalMap` of a mapper's content."""
+    segmentation = segment_rooms(content.grid)
+    observed = observed_entities(content.tracks, content.network)
+    known = {e.id for e in observed}
+    entities = [*observed, *predicted_entities(content.predictions, content.network, known)]
+    supports = supports_expected(content.predictions)
+    entities = [
+        replace(
+            e,
+            room=segmentation.room_at(*e.position_xyz[:2]),
+            supported_by=e.supported_by or supports.get(e.id),
+        )
+        for e in entities
+    ]
+    places = [_robot_place(p, segmentation) for p in content.places]
+    bounds = [_bound_in_room(b, segmentation) for b in content.bounds]
+    seen = {p.id: [i for i in p.seen if i in known] for p in content.places}
+    return TopologicalMap(
+        places=tuple(places),
+        entities=tuple(entities),
+        bounds=tuple(bounds),
+        doorways=tuple(_doorways(segmentation)),
+        rooms=tuple(_rooms(segmentation, entities, places, content)),
+        edges=tuple(edges_of(places, content.ways, entities, seen, bounds)),
+        grid=_with_things(content.grid, entities),
+        T_map_source=T_map_source,
+        trajectory=np.array([[stamp, *T.ravel()] for stamp, T in content.trajectory]),
+        closures=tuple(c for c in content.closures if c.entity in known),
+        counts=dict(content.counts),
+    )
+
+
+def _robot_place(place: Place, segmentation: Segmentation) -> RobotPlace:
+    room = segmentation.room_at(place.x, place.y)
+    return RobotPlace(place.id, place.x, place.y, place.yaw, place.stamp, place.view_index, room)
+
+
+def _bound_in_room(bound: Bound, segmentation: Segmentation) -> Bound:
+    middle = (np.asarray(bound.start_xy) + bound.end_xy) / 2
+    return replace(bound, room=segmentation.room_at(*middle))
+
+
+def _doorways(segmentation: Segmentation) -> list[Doorway]:
+    return [
+        Doorway(f"doorway-{i}", d.x, d.y, d.yaw, d.width, tuple(f"room-{n}" for n in d.labels))
+        for i, d in enumerate(segmentation.doorways, start=1)
+    ]
+
+
+def _rooms(
+    segmentation: Segmentation,
+    entities: Sequence[Entity],
+    places: Sequence[RobotPlace],
+    content: MapContent,
+) -> list[Room]:
+    """Rooms with the posterior that the affordances in them give (paper §II.F)."""
+    visited = {p.room for p in places}
+    visited |= {segmentation.room_at(T[0, 3], T[1, 3]) for _, T in content.trajectory}
+    rooms = []
+    for shape in segmentation.rooms:
+        id_ = f"room-{shape.label}"
+        counts: Counter[str] = Counter()
+        for entity in entities:
+            if entity.room == id_ and entity.kind is NodeKind.OBSERVED:
+                counts.update(_evidence_of(entity, content.network))
+        belief = content.network.room_posterior(counts)
+        x, y = shape.point_xy
+        rooms.append(Room(id_, x, y, shape.area, shape.polygon_xy, belief, id_ in visited))
+    return rooms
+
+
+def _evidence_of(entity: Entity, network: Network) -> tuple[str, ...]:
+    height = entity.position_xyz[2]
+    if "SupportAbility" not in entity.affordances:
+        height += entity.size_xyz[2] / 2
+    return network.evidence_of(entity.affordances, entity.size_xyz, height)
+
+
+def _with_things(grid: OccupancyGrid, entities: Sequence[Entity]) -> OccupancyGrid:
+    """O(x, y) of Algorithm 1: what isn't a robot place fills its cells, predicted things too.
+
+    With its probability, times its matching weight: dynamic things fill the grid weakly.
+    """
+    for entity in entities:
+        if "Floor" in entity.category_belief and entity.position_xyz[2] == 0.0:
+            continue
+        grid = rasterise(
+            grid,
+            (entity.position_xyz[0], entity.position_xyz[1]),
+            entity.size_xyz[:2],
+            entity.yaw,
+            entity.existence * entity.matching_weight,
+        )
+    return grid
