@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from afkb.flow import View
 from numpy.typing import NDArray
 
-from afkb.flow import View
 from afkb_mapping.coarse_search import candidates
 from afkb_mapping.geometry import T_from_xy_yaw, transform_xy, yaw_of
 from afkb_mapping.scan_matching import LocalMap, Match, agreement, refine, rotation
@@ -36,7 +36,7 @@ MAX_DEVIATION = 3.0
 JUMP_GAIN = 0.15
 """A jump away from odometry has to explain this much more of the scan than staying does."""
 NEW_GROUND = 0.25
-"""Where this part of a scan finds no surface within reach, it shows new ground, not a wrong pose."""
+"""Where this part of a scan finds no surface within reach, it shows new ground, no wrong pose."""
 REACH_M, REACH_RAD = 1.0, math.radians(30)
 """Bounds of the coarse search: slip and collisions within one step of a recording."""
 LOST_VIEWS = 3
@@ -116,7 +116,8 @@ class ScanRegistration:
         self, scan: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array
     ) -> Match | None:
         """The match from odometry's pose; where that explains little, the coarse search's best."""
-        information, nowhere = np.linalg.inv(prior), np.zeros(3)
+        information: Array = np.linalg.inv(prior)
+        nowhere = np.zeros(3)
         near = refine(scan, local_map, pivot, nowhere, information, nowhere)
         usual = _deviation(near, information) <= MAX_DEVIATION
         if usual and near.overlap >= GOOD_OVERLAP:

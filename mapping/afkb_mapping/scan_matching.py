@@ -50,13 +50,13 @@ class LocalMap:
         self.surface = surface
         self._tree = cKDTree(_with_normals(surface)) if len(surface) else None
 
-    def nearest(self, scan: SurfacePoints, radius_m: float) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    def nearest(
+        self, scan: SurfacePoints, radius_m: float
+    ) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
         """Index of the map point nearest to each scan point, and whether it is within radius."""
         if self._tree is None:
             return np.zeros(len(scan), dtype=np.intp), np.zeros(len(scan), dtype=bool)
-        distances, indices = self._tree.query(
-            _with_normals(scan), distance_upper_bound=radius_m
-        )
+        distances, indices = self._tree.query(_with_normals(scan), distance_upper_bound=radius_m)
         found = np.isfinite(distances)
         return np.where(found, indices, 0), found
 

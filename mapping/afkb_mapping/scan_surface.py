@@ -8,9 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-
 from afkb.flow import LaserScan
+from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
 
@@ -19,7 +18,7 @@ WINDOW_M = 0.12
 WINDOW_BEAMS = 2
 """Least number of neighbours on either side; where beams are sparse the window is that long."""
 GAP_M = 0.25
-"""Neighbouring beams further apart than this may lie on different things (a leg, the wall behind),"""
+"""Neighbouring beams further apart than this may lie on different things (a leg, a wall behind),"""
 GAP_RATIO = 2.5
 """and do, if they are also this much further apart than the beams beside them: along a wall seen
 at a slant the spacing grows, but evenly."""
