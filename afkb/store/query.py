@@ -1,0 +1,98 @@
+"""SPARQL 1.1 over maps and the ontology, on Oxigraph; reads only, and never the network."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from pyoxigraph import (
+    NamedNode,
+    QueryBoolean,
+    QuerySolutions,
+    QueryTriples,
+    RdfFormat,
+    Store,
+)
+
+from afkb.errors import KnowledgeError, QueryError
+from afkb.store.results import QueryResult
+from afkb.store.sparql_text import refuse_writing, syntax_error
+from afkb.store.stored import StoredMap
+from afkb.store.vocabulary import PREFIXES
+
+ONTOLOGY_GRAPH = "urn:afkb:ontology"
+
+
+def query(maps: Sequence[StoredMap], sparql: str, ontology: Iterable[Path] = ()) -> QueryResult:
+    """The answer to a SELECT, ASK, CONSTRUCT or DESCRIBE over one or several maps.
+
+    The default graph is everything together; `GRAPH ?map { … }` tells maps apart: a map's graph
+    is `urn:afkb:map:<name of its folder>`, the ontology's `urn:afkb:ontology`. Prefixes (`afn:`,
+    `geo:`, `prov:`, `skos:`, … and `scene:` for the first map) need no declaration. `ontology`:
+    RDF/XML or Turtle files. `QueryError`, with line and column, for what can't be parsed, and
+    for updates and SERVICE.
+    """
+    refuse_writing(sparql)
+    prefixes = dict(PREFIXES) | ({"scene": maps[0].base} if maps else {})
+    # Parsed against nothing first: a slip in the query is told before anything is loaded.
+    _run(Store(), sparql, prefixes)
+    store = dataset(maps, ontology)
+    answer = _run(store, sparql, prefixes)
+    try:
+        return QueryResult.read(answer, prefixes)
+    except OSError as error:
+        raise QueryError(f"the query failed while it ran: {error}") from error
+
+
+def dataset(maps: Sequence[StoredMap], ontology: Iterable[Path] = ()) -> Store:
+    """Maps and ontology in one store, a named graph each."""
+    store = Store()
+    names: set[str] = set()
+    for stored in maps:
+        name = graph_name(stored.folder, names)
+        graph = NamedNode(name)
+        store.bulk_extend(_in_graph(stored, graph))
+    for path in ontology:
+        load_ontology(store, path)
+    return store
+
+
+def graph_name(folder: Path, taken: set[str]) -> str:
+    """`urn:afkb:map:<folder>`; a second folder of the same name gets a number."""
+    from afkb.store.vocabulary import escaped
+
+    stem = name = f"urn:afkb:map:{escaped(folder.resolve().name)}"
+    number = 1
+    while name in taken:
+        number += 1
+        name = f"{stem}-{number}"
+    taken.add(name)
+    return name
+
+
+def _in_graph(stored: StoredMap, graph: NamedNode) -> Iterable[object]:
+    from pyoxigraph import Quad
+
+    for quad in stored.store:
+        yield Quad(quad.subject, quad.predicate, quad.object, graph)
+
+
+def load_ontology(store: Store, path: Path) -> None:
+    """Add an ontology file to the store; `KnowledgeError` where it can't be read."""
+    turtle = path.suffix in (".ttl", ".turtle")
+    form = RdfFormat.TURTLE if turtle else RdfFormat.RDF_XML
+    try:
+        store.bulk_load(path=str(path), format=form, to_graph=NamedNode(ONTOLOGY_GRAPH))
+    except (SyntaxError, ValueError, OSError) as error:
+        raise KnowledgeError(f"{path}: not readable as {form.name}: {error}") from error
+
+
+def _run(
+    store: Store, sparql: str, prefixes: dict[str, str]
+) -> QuerySolutions | QueryBoolean | QueryTriples:
+    try:
+        return store.query(sparql, prefixes=prefixes, use_default_graph_as_union=True)
+    except SyntaxError as error:
+        raise syntax_error(sparql, error) from error
+    except (ValueError, OSError) as error:
+        raise QueryError(f"the query can't be answered: {error}") from error

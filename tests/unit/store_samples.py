@@ -1,0 +1,129 @@
+"""A small home as plain data: two rooms, a hidden table that was predicted and then seen."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from afkb.flow import (
+    Bound,
+    Closure,
+    Doorway,
+    Edge,
+    EdgeKind,
+    Entity,
+    NodeKind,
+    OccupancyGrid,
+    RobotPlace,
+    Room,
+    TopologicalMap,
+)
+
+
+class Names:
+    """Knows the IRIs of a few individuals, as a knowledge base does."""
+
+    known = frozenset(
+        "SupportAbility ContainAbility IntrinsicContainAbility SitAbility Table Desk Mug Bowl "
+        "Chair Kitchen Hallway Bedroom Office Bathroom".split()
+    )
+
+    def iri(self, name: str) -> str:
+        if name not in self.known:
+            raise KeyError(name)
+        return f"https://w3id.org/afkb/afnet#{name}"
+
+
+def square(x: float, y: float, half: float) -> np.ndarray:
+    return np.array([[x - half, y - half], [x + half, y - half], [x + half, y + half],
+                     [x - half, y + half]])
+
+
+def entity(id: str, kind: NodeKind = NodeKind.OBSERVED, **changes: object) -> Entity:
+    facts: dict[str, object] = {
+        "id": id,
+        "kind": kind,
+        "position_xyz": (2.0, 1.0, 0.73),
+        "size_xyz": (1.2, 0.8, 0.73),
+        "yaw": 0.1,
+        "affordances": {"SupportAbility": 0.97},
+        "existence": 0.98,
+        "category_belief": {"Table": 0.7, "Desk": 0.2, "SomethingElse": 0.1},
+        "movability": "Static",
+        "matching_weight": 1.0,
+        "observations": 4,
+        "first_seen": 1.5,
+        "last_seen": 9.25,
+        "seen_from": ("p1", "p2"),
+        "generated_by": ("surfaces",),
+        "room": "room1",
+    }
+    return Entity(**(facts | changes))  # type: ignore[arg-type]
+
+
+def sample_entities() -> tuple[Entity, ...]:
+    table = entity(
+        "n1",
+        predicted_first=NodeKind.DUAL,
+        polygon_xy=square(2, 1, 0.5),
+        axioms=("https://w3id.org/afkb/afnet#dual-contain-support",),
+    )
+    mug = entity(
+        "n2",
+        position_xyz=(2.1, 1.1, 0.78),
+        size_xyz=(0.09, 0.08, 0.1),
+        affordances={"ContainAbility": 0.9, "GraspAbility": 0.4},
+        category_belief={"Mug": 0.6, "Bowl": 0.3, "SomethingElse": 0.1},
+        movability="Dynamic",
+        matching_weight=0.3,
+        supported_by="n1",
+        generated_by=("containers",),
+    )
+    doubtful = entity(
+        "n10",
+        position_xyz=(4.0, 1.0, 0.95),
+        affordances={"SupportAbility": 0.4},
+        extent_known=False,
+        room=None,
+    )
+    predicted = entity(
+        "n3",
+        NodeKind.CO_OCCURRENCE,
+        position_xyz=(2.5, 1.8, 0.7),
+        existence=0.65,
+        predicted_from=("n2",),
+        generated_by=("filtrations",),
+        axioms=("https://w3id.org/afkb/afnet#cooc-chair-table",),
+    )
+    return table, mug, doubtful, predicted
+
+
+def sample_grid() -> OccupancyGrid:
+    probability = np.full((30, 60), np.nan, dtype=np.float32)
+    probability[2:28, 2:58] = 0.05
+    probability[2, 2:58] = 0.95
+    probability[10:14, 20:26] = 0.65
+    return OccupancyGrid(probability, 0.1, (-1.0, -0.5))
+
+
+def sample_map() -> TopologicalMap:
+    return TopologicalMap(
+        places=(RobotPlace("p1", 0, 0, 0, 1.5, 0, "room1"), RobotPlace("p2", 1, 1, 1.57, 9.25, 40)),
+        entities=sample_entities(),
+        bounds=(Bound("b1", (-1, -0.3), (4.7, -0.3), 12, ("laser_bounds",), "room1"),),
+        doorways=(Doorway("d1", 3.5, 1.0, 0.0, 0.9, ("room1", "room2")),),
+        rooms=(
+            Room("room1", 1, 1, 8.0, square(1, 1, 1.4), {"Kitchen": 0.7, "UnknownRoom": 0.3}),
+            Room("room2", 4, 1, 3.2, square(4, 1, 0.9), {"UnknownRoom": 1.0}, visited=False),
+        ),
+        edges=(
+            Edge("e1", EdgeKind.PATH, "p1", "p2", 1.4142135, 0.7853981),
+            Edge("e2", EdgeKind.OBSTACLE, "p2", "n1", 1.0, 0.0, 0.785),
+            Edge("e3", EdgeKind.BOUND, "p1", "b1", 0.3, -1.5708),
+        ),
+        grid=sample_grid(),
+        T_map_source=np.eye(4),
+        trajectory=np.array([[0, 0, 0], [0.5, 0.4, 0.7], [1, 1, 1.57]], dtype=np.float64),
+        closures=(Closure("n1", NodeKind.DUAL, 0.7, 0.12, "p2", 9.25),),
+        notes=("n10: its top returns almost no depth; its extent is unknown",),
+        counts={"frames": 41, "skipped_frames": 1},
+    )
