@@ -1,1 +1,34 @@
 """Source: ROS 1 and ROS 2 bags, read without ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from afkb.plugins import hookimpl
+
+if TYPE_CHECKING:
+    from afkb.knowledge import KnowledgeBase
+    from afkb.plugins.protocols import Source
+
+_ENDINGS = frozenset({".bag", ".mcap", ".db3"})
+
+
+@hookimpl
+def afkb_open_source(
+    uri: str, options: Mapping[str, str], knowledge_base: KnowledgeBase
+) -> Source | None:
+    """Open a `.bag`, `.mcap` or `.db3` file, or a folder that holds such files."""
+    path = Path(uri)
+    if "://" in uri or not _is_bag(path):
+        return None
+    from afkb_rosbag.source import open_bag
+
+    return open_bag(uri, options)
+
+
+def _is_bag(path: Path) -> bool:
+    if path.is_dir():
+        return any(p.suffix in _ENDINGS or p.name == "metadata.yaml" for p in path.iterdir())
+    return path.is_file() and path.suffix in _ENDINGS

@@ -18,6 +18,7 @@ from afkb.errors import BadFrame, SourceError
 from afkb.flow import PinholeCamera, SkippedFrame, View
 from afkb.plugins.options import read_options
 from afkb_mapping.depth_png import decode_png16, metres, png_size
+from afkb_mapping.optical import T_BODY_OPTICAL, T_OPTICAL_BODY
 from afkb_seven_scenes.intrinsics import find_intrinsics
 
 # 7-Scenes has no stamps; its Kinect ran at 30 frames a second.
@@ -25,12 +26,6 @@ _FRAMES_PER_SECOND = 30.0
 _FRAME = re.compile(r"frame-(\d+)\.(depth\.png|pose\.txt)$")
 _FRAMES_ASKED_FOR_SIZE = 25
 _LAYOUT = "frame-000000.depth.png, frame-000000.pose.txt … and camera-intrinsics.txt"
-
-# Body axes (x ahead, y left, z up) of an optical frame (x right, y down, z forward): REP-103.
-T_BODY_OPTICAL: NDArray[np.float64] = np.array(
-    [[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=np.float64
-)
-_T_OPTICAL_BODY = T_BODY_OPTICAL.T
 
 
 class SevenScenesOptions(BaseModel):
@@ -86,7 +81,7 @@ class SevenScenesSource:
         return View(
             index=index,
             stamp=int(name.removeprefix("frame-")) / _FRAMES_PER_SECOND,
-            T_odom_base=T_world_camera @ _T_OPTICAL_BODY,
+            T_odom_base=T_world_camera @ T_OPTICAL_BODY,
             depth_m=depth_m,
             camera=self.camera,
             T_base_camera=T_BODY_OPTICAL,

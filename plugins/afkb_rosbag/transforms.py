@@ -1,0 +1,192 @@
+"""A tree of frames over time: links recorded one by one, looked up as a chain at one moment."""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections import deque
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.errors import BadFrame
+
+NS = 1_000_000_000
+
+
+class Track:
+    """Poses of a child frame in its parent over time: stamps (ns), metres, quaternions (x y z w).
+
+    `static` holds at all times. 64 bytes a sample, so that hours of odometry stay small.
+    """
+
+    def __init__(self, static: bool = False) -> None:
+        self.static = static
+        self._stamps = array("q")
+        self._values = array("d")
+        self._sorted: tuple[NDArray[np.int64], NDArray[np.float64]] | None = None
+
+    def __len__(self) -> int:
+        return len(self._stamps)
+
+    def add(self, stamp: int, xyz: tuple[float, ...], quat_xyzw: tuple[float, ...]) -> None:
+        """Take in a pose; one that is not finite or has a zero quaternion counts as missing."""
+        norm = math.sqrt(sum(q * q for q in quat_xyzw))
+        if not (math.isfinite(norm) and norm > 1e-6 and all(map(math.isfinite, xyz))):
+            return
+        self._stamps.append(stamp)
+        self._values.extend((*xyz, *(q / norm for q in quat_xyzw)))
+        self._sorted = None
+
+    def at(self, stamp: int, max_dt: float, max_gap: float) -> NDArray[np.float64]:
+        """T_parent_child (4, 4) at a stamp (ns).
+
+        Interpolated between samples at most `max_gap` s apart, else the nearest within `max_dt` s;
+        `BadFrame` where there is neither.
+        """
+        stamps, values = self._in_order()
+        if self.static:
+            return _matrix(values[-1])
+        after = int(np.searchsorted(stamps, stamp))
+        if after < len(stamps) and stamps[after] == stamp:
+            return _matrix(values[after])
+        inside = 0 < after < len(stamps)
+        if inside and stamps[after] - stamps[after - 1] <= max_gap * NS:
+            share = (stamp - stamps[after - 1]) / (stamps[after] - stamps[after - 1])
+            return _between(values[after - 1], values[after], float(share))
+        around = (max(after - 1, 0), min(after, len(stamps) - 1))
+        near = min(around, key=lambda i: abs(int(stamps[i]) - stamp))
+        gap = abs(int(stamps[near]) - stamp) / NS
+        if gap > max_dt:
+            raise BadFrame(f"no transform within {max_dt:g} s (nearest {gap:.3f} s away)")
+        return _matrix(values[near])
+
+    def _in_order(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        if self._sorted is None:
+            stamps = np.array(self._stamps, dtype=np.int64)
+            order = np.argsort(stamps, kind="stable")
+            values = np.array(self._values).reshape(-1, 7)
+            self._sorted = stamps[order], values[order]
+        return self._sorted
+
+
+def _between(a: NDArray[np.float64], b: NDArray[np.float64], share: float) -> NDArray[np.float64]:
+    from scipy.spatial.transform import Rotation, Slerp
+
+    T = np.eye(4)
+    T[:3, :3] = Slerp([0.0, 1.0], Rotation.from_quat([a[3:], b[3:]]))(share).as_matrix()
+    T[:3, 3] = (1 - share) * a[:3] + share * b[:3]
+    return T
+
+
+def _matrix(value: NDArray[np.float64]) -> NDArray[np.float64]:
+    from scipy.spatial.transform import Rotation
+
+    T = np.eye(4)
+    T[:3, :3] = Rotation.from_quat(value[3:]).as_matrix()
+    T[:3, 3] = value[:3]
+    return T
+
+
+def inverse(T: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Inverse of a rigid transform (4, 4)."""
+    R = T[:3, :3].T
+    inverted = np.eye(4)
+    inverted[:3, :3] = R
+    inverted[:3, 3] = -R @ T[:3, 3]
+    return inverted
+
+
+@dataclass
+class FrameTree:
+    """Links between frames, keyed (parent, child); `max_dt` and `max_gap` as in `Track.at`."""
+
+    max_dt: float
+    max_gap: float
+    links: dict[tuple[str, str], Track] = field(default_factory=dict)
+    _chains: dict[tuple[str, str], list[tuple[str, str]] | None] = field(default_factory=dict)
+
+    def track(self, parent: str, child: str, static: bool = False) -> Track:
+        """The link's track, made on first use; a static link that also moves is a moving one."""
+        key = (parent, child)
+        found = self.links.get(key)
+        if found is None or (found.static and not static):
+            found = self.links[key] = Track(static)
+            self._chains.clear()
+        return found
+
+    def replace_parent(self, parent: str, child: str, track: Track) -> None:
+        """Hang `child` under `parent` by that track and no other."""
+        self.links = {k: t for k, t in self.links.items() if k[1] != child}
+        self.links[(parent, child)] = track
+        self._chains.clear()
+
+    @property
+    def frames(self) -> set[str]:
+        """Names of all frames that a usable link touches."""
+        return {name for link, track in self.links.items() if len(track) for name in link}
+
+    def root_of(self, frame: str) -> str:
+        """The topmost ancestor of a frame."""
+        parents = {child: parent for (parent, child), track in self.links.items() if len(track)}
+        seen = {frame}
+        while frame in parents and parents[frame] not in seen:
+            frame = parents[frame]
+            seen.add(frame)
+        return frame
+
+    def connected(self, a: str, b: str) -> bool:
+        """Whether any chain of links leads from one frame to the other."""
+        return self._chain(a, b) is not None
+
+    def moves(self, a: str, b: str) -> bool:
+        """Whether a link that changes over time lies between two frames."""
+        return any(not self._link(*step)[0].static for step in self._chain(a, b) or ())
+
+    def lookup(self, a: str, b: str, stamp: int) -> NDArray[np.float64]:
+        """T_a_b (4, 4) at a stamp (ns); `BadFrame` names the link that has a gap there."""
+        chain = self._chain(a, b)
+        if chain is None:
+            raise BadFrame(f"no tf between {a!r} and {b!r}")
+        T = np.eye(4)
+        for step in chain:
+            track, forward = self._link(*step)
+            try:
+                T_step = track.at(stamp, self.max_dt, self.max_gap)
+            except BadFrame as error:
+                raise BadFrame(f"tf {step[0]} → {step[1]}: {error}") from error
+            T = T @ (T_step if forward else inverse(T_step))
+        return T
+
+    def _link(self, a: str, b: str) -> tuple[Track, bool]:
+        track = self.links.get((a, b))
+        return (track, True) if track is not None else (self.links[(b, a)], False)
+
+    def _chain(self, a: str, b: str) -> list[tuple[str, str]] | None:
+        if (a, b) not in self._chains:
+            self._chains[(a, b)] = self._search(a, b)
+        return self._chains[(a, b)]
+
+    def _search(self, a: str, b: str) -> list[tuple[str, str]] | None:
+        """Shortest chain of steps by breadth, neighbours by name, so that it is always the same."""
+        neighbours: dict[str, set[str]] = {}
+        for (parent, child), track in self.links.items():
+            if len(track):
+                neighbours.setdefault(parent, set()).add(child)
+                neighbours.setdefault(child, set()).add(parent)
+        came_from: dict[str, str] = {a: a}
+        queue = deque([a])
+        while queue and b not in came_from:
+            here = queue.popleft()
+            for there in sorted(neighbours.get(here, ())):
+                if there not in came_from:
+                    came_from[there] = here
+                    queue.append(there)
+        if b not in came_from:
+            return None
+        steps: list[tuple[str, str]] = []
+        while b != a:
+            steps.append((came_from[b], b))
+            b = came_from[b]
+        return steps[::-1]
