@@ -28,12 +28,11 @@ def ground(
     foot_hidden: bool,
     view: View,
     unknown: Unknown,
-    new_id: Callable[[str], str],
 ) -> PredictedTrack | None:
     """The region of a hypothesis, or None where everything about it has been looked at.
 
     What is below or on its anchors lies under their common outline; what is near them lies at its
-    typical distance, on the side that has not been seen yet.
+    typical distance, on the side that has not been seen yet. It has no id before it is kept.
     """
     region = (
         _near(hypothesis, anchors, unknown)
@@ -43,7 +42,7 @@ def ground(
     if region is None:
         return None
     return PredictedTrack(
-        id=new_id("predicted"),
+        id="",
         kind=KIND_OF_ORDER[hypothesis.order],
         low_xy=region[0],
         high_xy=region[1],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,7 @@ from afkb.knowledge import KnowledgeBase
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
 from afkb_mapping.grounding import fits, ground, joined, same_prediction
+from afkb_mapping.ids import Ids
 from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
 from afkb_mapping.snapshot import MapContent, snapshot
@@ -26,16 +26,6 @@ EMPTY_LIKELIHOOD_RATIO = 0.3
 a look misses a surface that is there in about a quarter of views (thin, dark, at the edge)."""
 LOOKED_AT_SHARE = 0.7
 GONE_BELOW = 0.2
-
-
-class Ids:
-    """Numbers nodes in order of discovery, so that the same input names them the same."""
-
-    def __init__(self) -> None:
-        self._count = count(1)
-
-    def __call__(self, kind: str) -> str:
-        return f"{kind}-{next(self._count)}"
 
 
 class AffordanceMapper:
@@ -133,7 +123,7 @@ class AffordanceMapper:
             if not anchors:
                 continue
             hidden = not any("support_height" in detections[i].measures for i in hypothesis.anchors)
-            track = ground(hypothesis, anchors, hidden, view, self._grid.unknown, self._new_id)
+            track = ground(hypothesis, anchors, hidden, view, self._grid.unknown)
             if track is not None and not self._fulfilled(track):
                 expected.append(track)
         return expected
@@ -146,6 +136,7 @@ class AffordanceMapper:
         for i, prediction in enumerate(expected):
             old = next((p for p in self._predictions if same_prediction(p, prediction)), None)
             if old is None:
+                prediction.id = self._new_id("predicted")
                 prediction.viewpoints.is_new(_eye(view), prediction.center_xy)
                 self._predictions.append(prediction)
                 continue

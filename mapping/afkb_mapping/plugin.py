@@ -1,1 +1,44 @@
 """Brings the built-in mapper and the commands that need geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from afkb.plugins import hookimpl
+
+if TYPE_CHECKING:
+    import typer
+
+    from afkb.knowledge import KnowledgeBase
+    from afkb.plugins.protocols import Mapper, MapperFactory
+
+
+@dataclass(frozen=True, slots=True)
+class AffordanceMapperFactory:
+    """Makes mappers that follow Algorithm 1 of the paper."""
+
+    knowledge_base: KnowledgeBase
+    name: str = "affordance"
+
+    def __call__(self, rule: str) -> Mapper:
+        """A fresh mapper with the named update rule."""
+        from afkb.inference import Network
+        from afkb_mapping.mapper import AffordanceMapper
+
+        return AffordanceMapper(self.knowledge_base, Network.compile(self.knowledge_base), rule)
+
+
+@hookimpl
+def afkb_mappers(knowledge_base: KnowledgeBase) -> Iterable[MapperFactory]:
+    """Return the built-in mapper."""
+    return [AffordanceMapperFactory(knowledge_base)]
+
+
+@hookimpl
+def afkb_commands(cli: typer.Typer, knowledge_base: KnowledgeBase) -> None:
+    """Add `map` and `demo`."""
+    from afkb_mapping.commands import add_commands
+
+    add_commands(cli)

@@ -22,23 +22,27 @@ Array = NDArray[np.float64]
 
 ODOMETRY_SHIFT = (0.03, 0.10)
 """Standard deviation of odometry's shift between views: m, and m per m travelled."""
-ODOMETRY_TURN = (0.02, 0.10, 0.03)
+ODOMETRY_TURN = (0.02, 0.10, 0.06)
 """Standard deviation of odometry's turn: rad, rad per rad turned, rad per m travelled."""
 MIN_POINTS = 20
 """A scan with fewer surface points fixes no pose: the laser is blind here."""
-GOOD_OVERLAP = 0.5
-"""A match that explains this part of the scan needs no second opinion, and may be a jump away from
-odometry; below it, the coarse search is tried."""
+GOOD_OVERLAP = 0.7
+"""A match near odometry that explains this part of the scan needs no second opinion; below it, the
+coarse search is asked."""
 LEAST_OVERLAP = 0.15
 """Where the robot enters a room little of a scan is known; this much, near odometry, will do."""
 MAX_DEVIATION = 3.0
-"""Standard deviations from odometry within which a match is believed without good overlap."""
+"""Standard deviations from odometry within which a match counts as near."""
+JUMP_OVERLAP = 0.5
+"""A match further from odometry must explain this part of the scan,"""
 JUMP_GAIN = 0.15
-"""A jump away from odometry has to explain this much more of the scan than staying does."""
+"""and this much more of it than the best near one does."""
 NEW_GROUND = 0.25
 """Where this part of a scan finds no surface within reach, it shows new ground, no wrong pose."""
 REACH_M, REACH_RAD = 1.0, math.radians(30)
-"""Bounds of the coarse search: slip and collisions within one step of a recording."""
+"""Greatest reach of the coarse search: slip and collisions within one step of a recording,"""
+REACH_DEVIATIONS = 8.0
+"""and its reach in standard deviations of odometry where that is less."""
 LOST_VIEWS = 3
 """After this many unmatched views in a row the map starts anew at the odometry's place."""
 RADIUS_M = 15.0
@@ -106,7 +110,7 @@ class ScanRegistration:
         if match is None:
             return self._go_on_by_odometry(scan, local_map, T_predicted, drift)
         self._unmatched = 0
-        self._covariance = np.linalg.inv(match.information + np.linalg.inv(prior))
+        self._covariance = _inverse(match.information + _inverse(prior))
         T_correction = _about(pivot, match.motion)
         self._T_map_odom = T_correction @ self._T_map_odom
         self._map.add(scan.moved(T_correction[:2, :2], T_correction[:2, 3]))
@@ -116,16 +120,16 @@ class ScanRegistration:
         self, scan: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array
     ) -> Match | None:
         """The match from odometry's pose; where that explains little, the coarse search's best."""
-        information: Array = np.linalg.inv(prior)
         nowhere = np.zeros(3)
-        near = refine(scan, local_map, pivot, nowhere, information, nowhere)
-        usual = _deviation(near, information) <= MAX_DEVIATION
-        if usual and near.overlap >= GOOD_OVERLAP:
-            return near
-        jump = _best_jump(scan, local_map, pivot, prior) if len(local_map.surface) else near
-        if jump.overlap >= max(GOOD_OVERLAP, near.overlap + JUMP_GAIN):
+        match = refine(scan, local_map, pivot, nowhere, _inverse(prior), nowhere)
+        near = _deviation(match, prior) <= MAX_DEVIATION
+        if near and match.overlap >= GOOD_OVERLAP:
+            return match
+        staying = match.overlap if near else agreement(scan, local_map)[0]
+        jump = max([match, *_jumps(scan, local_map, pivot, prior)], key=lambda m: m.overlap)
+        if jump.overlap >= max(JUMP_OVERLAP, staying + JUMP_GAIN):
             return jump
-        return near if usual and near.overlap >= LEAST_OVERLAP else None
+        return match if near and match.overlap >= LEAST_OVERLAP else None
 
     def _go_on_by_odometry(
         self, scan: SurfacePoints, local_map: LocalMap, T_predicted: Array, drift: Array
@@ -140,21 +144,28 @@ class ScanRegistration:
         return PlacedPose(T_predicted, self._covariance, False, overlap)
 
 
-def _best_jump(scan: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array) -> Match:
-    """The match that explains most, wherever the coarse search finds it."""
+def _jumps(
+    scan: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array
+) -> list[Match]:
+    """Matches from wherever the coarse search finds the scan to fit."""
+    if not len(local_map.surface):
+        return []
     sigmas = np.sqrt(np.diag(prior))
+    reach = np.minimum(REACH_DEVIATIONS * sigmas, [REACH_M, REACH_M, REACH_RAD])
     map_points = local_map.surface.points_xy
-    starts = candidates(scan, map_points, pivot, REACH_M, REACH_RAD, sigmas)
-    loose = np.diag(1 / np.array([REACH_M, REACH_M, REACH_RAD]) ** 2)
-    return max(
-        (refine(scan, local_map, pivot, start, loose, start, (0.3, 0.15)) for start in starts),
-        key=lambda match: match.overlap,
-    )
+    starts = candidates(scan, map_points, pivot, float(reach[:2].max()), float(reach[2]), sigmas)
+    loose = np.diag(1 / reach**2)
+    return [refine(scan, local_map, pivot, start, loose, start, (0.3, 0.15)) for start in starts]
 
 
-def _deviation(match: Match, information: Array) -> float:
+def _deviation(match: Match, prior: Array) -> float:
     """Mahalanobis distance of a match from odometry."""
-    return math.sqrt(float(match.motion @ information @ match.motion))
+    return math.sqrt(float(match.motion @ _inverse(prior) @ match.motion))
+
+
+def _inverse(matrix: Array) -> Array:
+    inverse: Array = np.linalg.inv(matrix).astype(np.float64)
+    return inverse
 
 
 def _surface_in_map(view: View, T_map_base: Array) -> SurfacePoints:

@@ -1,0 +1,64 @@
+"""What a traditional topological map would hold: the paper's comparison in §III, Fig. 2 row 1."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import Detection, Hypothesis, TopologicalMap, View
+from afkb.inference import Network
+from afkb.knowledge import KnowledgeBase
+from afkb_mapping.association import Association
+from afkb_mapping.bounds import BoundMerger
+from afkb_mapping.ids import Ids
+from afkb_mapping.occupancy import GridBuilder
+from afkb_mapping.places import Places
+from afkb_mapping.snapshot import MapContent, snapshot
+
+
+class ObservedOnlyMapper:
+    """Places, observed things and bounds; hypotheses are left aside, nothing ever vanishes."""
+
+    def __init__(self, knowledge_base: KnowledgeBase, network: Network) -> None:
+        self._knowledge_base = knowledge_base
+        self._network = network
+        new_id = Ids()
+        self._association = Association(new_id)
+        self._places = Places(new_id)
+        self._bounds = BoundMerger()
+        self._grid = GridBuilder()
+        self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
+
+    def add(
+        self, view: View, detections: Sequence[Detection], hypotheses: Sequence[Hypothesis]
+    ) -> None:
+        """Take in what was seen in one placed view."""
+        assert view.T_map_base is not None
+        self._trajectory.append((view.stamp, view.T_map_base))
+        self._grid.insert(view)
+        seen = [t for t in self._association.match(view, detections) if t is not None]
+        place = self._places.visit(view, {t.id: None for t in seen if not t.is_floor})
+        for track in seen:
+            track.places[place.id] = None
+        for detection in detections:
+            if detection.segment_xy is not None:
+                self._bounds.add(detection, place.id)
+
+    def finish(self, T_map_source: NDArray[np.float64]) -> TopologicalMap:
+        """The map of what was added so far."""
+        content = MapContent(
+            knowledge_base=self._knowledge_base,
+            network=self._network,
+            tracks=self._association.tracks,
+            predictions=(),
+            places=self._places.places,
+            ways=list(self._places.ways),
+            bounds=self._bounds.bounds(),
+            grid=self._grid.grid(),
+            closures=(),
+            trajectory=self._trajectory,
+            counts={"births": self._association.births, "merges": self._association.merges},
+        )
+        return snapshot(content, T_map_source)
