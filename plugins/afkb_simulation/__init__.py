@@ -1,1 +1,24 @@
-"""Source: a simulated world, ray-cast."""
+"""Source: a simulated world (`*.world.yaml`, or `world:NAME` for a bundled one), ray-cast."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from afkb.plugins import hookimpl
+
+if TYPE_CHECKING:
+    from afkb.knowledge import KnowledgeBase
+    from afkb.plugins.protocols import Source
+
+
+@hookimpl
+def afkb_open_source(
+    uri: str, options: Mapping[str, str], knowledge_base: KnowledgeBase
+) -> Source | None:
+    """Open `*.world.yaml` and `world:NAME`; option `seed` replaces the world's seed."""
+    if not (uri.endswith(".world.yaml") or uri.startswith("world:")):
+        return None
+    from afkb_simulation.source import open_world
+
+    return open_world(uri, options)
