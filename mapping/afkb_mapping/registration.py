@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from afkb.flow import View
 from numpy.typing import NDArray
 
+from afkb.flow import View
 from afkb_mapping.coarse_search import candidates
 from afkb_mapping.geometry import T_from_xy_yaw, transform_xy, yaw_of
 from afkb_mapping.scan_matching import LocalMap, Match, agreement, refine, rotation
@@ -144,9 +144,7 @@ class ScanRegistration:
         return PlacedPose(T_predicted, self._covariance, False, overlap)
 
 
-def _jumps(
-    scan: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array
-) -> list[Match]:
+def _jumps(scan: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array) -> list[Match]:
     """Matches from wherever the coarse search finds the scan to fit."""
     if not len(local_map.surface):
         return []

@@ -8,8 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from afkb.flow import LaserScan
 from numpy.typing import NDArray
+
+from afkb.flow import LaserScan
 
 Points = NDArray[np.float64]
 
