@@ -1,0 +1,185 @@
+"""The occupancy grid O: log-odds of cells from laser beams and depth (paper §II.E).
+
+The inverse sensor model is that of Thrun, Burgard and Fox, Probabilistic Robotics, ch. 9: a beam
+says "free" along its way and "occupied" where it ends.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.errors import BadFrame
+from afkb.flow import OccupancyGrid, View
+from afkb_mapping.geometry import transform_xy
+
+RESOLUTION_M = 0.05
+"""Cell size: what nav2 and the floor plans of the field use."""
+LOG_ODDS_OCCUPIED = 0.85
+"""A beam's end is in an occupied cell with probability 0.70: the rest is pose and angle error."""
+LOG_ODDS_FREE = -0.4
+"""A cell that a beam passes is free with probability 0.60; less, as beams graze corners of cells."""
+LOG_ODDS_LIMIT = 3.5
+"""Clamp (probability 0.03 to 0.97), so that what is moved away is gone after some ten looks."""
+MAX_FREE_RANGE_M = 15.0
+"""Beams clear cells up to here: further off, the angle between beams leaves gaps anyway."""
+MARGIN_M = 5.0
+"""The array grows by at least this much, so that growing stays rare."""
+
+Points = NDArray[np.float64]
+
+
+class GridBuilder:
+    """Builds the grid view by view; the array grows with what is seen, the origin in whole cells.
+
+    Each cell changes once per view at most, and a hit beats a miss: two hundred beams of one view
+    that graze the same cell are one observation.
+    """
+
+    def __init__(self, resolution: float = RESOLUTION_M) -> None:
+        self._resolution = resolution
+        self._log_odds = np.zeros((0, 0), dtype=np.float32)
+        self._seen = np.zeros((0, 0), dtype=bool)
+        self._first_cell = np.zeros(2, dtype=np.int64)
+
+    def insert_scan(self, view: View) -> None:
+        """Take in the laser scan of a placed view; beams without a return clear nothing.
+
+        A missing return may be glass, a black sofa or open space: it is no evidence for either.
+        """
+        if view.scan is None:
+            raise BadFrame("insert_scan: this view has no laser scan")
+        T_map_laser = view.T_map_laser
+        ends = transform_xy(T_map_laser, view.scan.points_xy)
+        self._insert(T_map_laser[:2, 3], ends, np.ones(len(ends), dtype=bool))
+
+    def insert_depth_obstacles(
+        self, obstacles_xy: Points, sensor_xy: Points, floor_xy: Points | None = None
+    ) -> None:
+        """Take in a depth view seen from above, where there is no laser.
+
+        - `obstacles_xy` (N, 2): ends of pixels 0.1 to 1.5 m above the floor, m, map frame.
+        - `floor_xy` (M, 2): floor pixels. They are free themselves, and say nothing about the way
+          to them: the camera may have looked at them over a table.
+        """
+        obstacles = np.asarray(obstacles_xy, dtype=np.float64).reshape(-1, 2)
+        if floor_xy is None:
+            self._insert(sensor_xy, obstacles, np.ones(len(obstacles), dtype=bool))
+            return
+        floor = np.asarray(floor_xy, dtype=np.float64).reshape(-1, 2)
+        points = np.concatenate([obstacles, floor])
+        self._ensure(points)
+        verdict = np.zeros(self._log_odds.shape, dtype=np.int8)
+        verdict[self._cells(floor)] = -1
+        verdict[self._cells(obstacles)] = 1
+        self._apply(verdict)
+
+    def _insert(self, sensor_xy: Points, ends_xy: Points, hit: NDArray[np.bool_]) -> None:
+        from afkb_mapping.ray_kernel import trace_beams
+
+        if not len(ends_xy):
+            return
+        sensor = np.asarray(sensor_xy, dtype=np.float64)
+        ends, hit = _shortened(sensor, ends_xy, hit)
+        self._ensure(np.concatenate([ends, sensor[None]]))
+        origin = self._first_cell * self._resolution
+        verdict = np.zeros(self._log_odds.shape, dtype=np.int8)
+        trace_beams(
+            verdict, (sensor - origin) / self._resolution, (ends - origin) / self._resolution, hit
+        )
+        self._apply(verdict)
+
+    def _apply(self, verdict: NDArray[np.int8]) -> None:
+        """One observation per cell: 1 occupied, -1 free, 0 not seen."""
+        update = np.where(verdict > 0, LOG_ODDS_OCCUPIED, np.where(verdict < 0, LOG_ODDS_FREE, 0.0))
+        self._seen |= verdict != 0
+        self._log_odds += update.astype(np.float32)
+        np.clip(self._log_odds, -LOG_ODDS_LIMIT, LOG_ODDS_LIMIT, out=self._log_odds)
+
+    def _cells(self, points_xy: Points) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Rows and columns of points inside the array."""
+        cells = np.floor(points_xy / self._resolution).astype(np.int64) - self._first_cell
+        return cells[:, 1], cells[:, 0]
+
+    def _ensure(self, points_xy: Points) -> None:
+        """Grow the array where a point lies outside it."""
+        cells = np.floor(points_xy / self._resolution).astype(np.int64)
+        low, high = cells.min(axis=0), cells.max(axis=0) + 1
+        size = np.array(self._log_odds.shape[::-1], dtype=np.int64)
+        if size.any():
+            if (low >= self._first_cell).all() and (high <= self._first_cell + size).all():
+                return
+            low = np.minimum(low, self._first_cell)
+            high = np.maximum(high, self._first_cell + size)
+        margin = math.ceil(MARGIN_M / self._resolution)
+        low, high = low - margin, high + margin
+        cols, rows = (int(n) for n in high - low)
+        log_odds = np.zeros((rows, cols), dtype=np.float32)
+        seen = np.zeros((rows, cols), dtype=bool)
+        if size.any():
+            c, r = (int(n) for n in self._first_cell - low)
+            inside = np.s_[r : r + int(size[1]), c : c + int(size[0])]
+            log_odds[inside], seen[inside] = self._log_odds, self._seen
+        self._log_odds, self._seen, self._first_cell = log_odds, seen, low
+
+    def grid(self) -> OccupancyGrid:
+        """The grid so far, cut to what was seen; one unknown cell where nothing was."""
+        rows, cols = np.flatnonzero(self._seen.any(axis=1)), np.flatnonzero(self._seen.any(axis=0))
+        if not len(rows):
+            return OccupancyGrid(np.full((1, 1), np.nan, np.float32), self._resolution, (0.0, 0.0))
+        part = np.s_[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
+        probability = 1 / (1 + np.exp(-self._log_odds[part]))
+        probability = np.where(self._seen[part], probability, np.nan).astype(np.float32)
+        x, y = (self._first_cell + [cols[0], rows[0]]) * self._resolution
+        return OccupancyGrid(probability, self._resolution, (round(float(x), 6), round(float(y), 6)))
+
+
+def _shortened(
+    sensor: Points, ends: Points, hit: NDArray[np.bool_]
+) -> tuple[Points, NDArray[np.bool_]]:
+    """Beams cut at `MAX_FREE_RANGE_M`; a cut beam clears, but hits nothing."""
+    offsets = ends - sensor
+    lengths = np.linalg.norm(offsets, axis=1)
+    long = lengths > MAX_FREE_RANGE_M
+    scale = np.where(long, MAX_FREE_RANGE_M / np.maximum(lengths, 1e-9), 1.0)
+    return sensor + offsets * scale[:, None], hit & ~long
+
+
+def rasterise(
+    grid: OccupancyGrid, polygon_xy: Points, probability: float
+) -> OccupancyGrid:
+    """The grid with a thing drawn into it: each cell at least as occupied as the thing is likely.
+
+    For predicted and dynamic things (DESIGN §2: predicted things fill the grid too).
+    `polygon_xy` (N, 2), m, map frame; unknown cells under it become known. The grid grows if the
+    thing reaches beyond it.
+    """
+    if not 0 <= probability <= 1:
+        raise ValueError(f"probability {probability} is not in 0..1")
+    import cv2
+
+    grid = _grown(grid, np.asarray(polygon_xy, dtype=np.float64))
+    mask = np.zeros(grid.probability.shape, dtype=np.uint8)
+    corners = (np.asarray(polygon_xy) - grid.origin_xy) / grid.resolution_m - 0.5
+    shift = 8
+    cv2.fillPoly(mask, [np.round(corners * (1 << shift)).astype(np.int32)], 1, shift=shift)
+    drawn = np.fmax(grid.probability, np.float32(probability))
+    filled = np.where(mask > 0, drawn, grid.probability).astype(np.float32)
+    return OccupancyGrid(filled, grid.resolution_m, grid.origin_xy)
+
+
+def _grown(grid: OccupancyGrid, points_xy: Points) -> OccupancyGrid:
+    """The grid with unknown cells added so that it covers the points."""
+    resolution, origin = grid.resolution_m, np.array(grid.origin_xy)
+    rows, cols = grid.probability.shape
+    low = np.floor((points_xy.min(axis=0) - origin) / resolution).astype(int)
+    high = np.floor((points_xy.max(axis=0) - origin) / resolution).astype(int) + 1
+    left, below = (max(0, -int(n)) for n in low)
+    right, above = max(0, int(high[0]) - cols), max(0, int(high[1]) - rows)
+    if not (left or below or right or above):
+        return grid
+    padded = np.pad(grid.probability, ((below, above), (left, right)), constant_values=np.nan)
+    x, y = origin - np.array([left, below]) * resolution
+    return OccupancyGrid(padded, resolution, (round(float(x), 6), round(float(y), 6)))
