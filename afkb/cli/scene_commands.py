@@ -1,0 +1,210 @@
+"""Commands that read only a map's RDF: `info`, `rooms`, `query`."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from afkb.cli.output import print_json, print_table, print_text
+from afkb.cli.state import state_of
+
+if TYPE_CHECKING:
+    from afkb.store import StoredMap
+
+MapArgument = Annotated[
+    Path, typer.Argument(metavar="MAP", help="Folder that `afkb map` wrote.", show_default=False)
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
+
+
+class Format(StrEnum):
+    """How an answer is written."""
+
+    TABLE = "table"
+    CSV = "csv"
+    JSON = "json"
+    TTL = "ttl"
+
+
+def info(map_folder: MapArgument, as_json: JsonOption = False) -> None:
+    """Show what a map holds: its nodes by kind, its loop closures, its notes.
+
+    Example: afkb info kitchen
+    """
+    from afkb.store import load
+    from afkb.store.shapes import info_json
+
+    stored = load(map_folder)
+    if as_json:
+        print_json(info_json(stored))
+        return
+    _print_kinds(stored)
+    _print_things(stored)
+    _print_closures(stored)
+    for note in stored.notes:
+        print_text(f"note: {note}")
+
+
+def _print_kinds(stored: StoredMap) -> None:
+    rows = [(kind, count) for kind, count in stored.kinds.items()]
+    rows += [(name.replace("_", " "), count) for name, count in stored.counts.items()]
+    print_table(["what", "count"], rows, title=str(stored.folder), numbers=["count"])
+
+
+def _print_things(stored: StoredMap) -> None:
+    from afkb.store.shapes import nodes_json
+    from afkb.store.vocabulary import MAP_NODES
+
+    columns = ["id", "kind", "affords", "x", "y", "z", "exists", "likeliest", "on", "room"]
+    things = nodes_json(stored, [kind for kind in MAP_NODES if kind != "RobotPlace"])
+    rows = [_thing_row(thing) for thing in things]
+    if rows:
+        print_table(columns, rows, numbers=["x", "y", "z", "exists"])
+
+
+def _thing_row(thing: dict[str, object]) -> tuple[object, ...]:
+    category = thing["category"]
+    assert isinstance(category, dict)
+    affords = thing["affords"]
+    assert isinstance(affords, list)
+    return (
+        thing["id"],
+        thing["kind"],
+        ", ".join(affords),
+        *(f"{thing[axis]:.2f}" for axis in "xyz"),
+        f"{thing['existence']:.2f}",
+        _likeliest(category),
+        thing["supported_by"] or "",
+        thing["room"] or "",
+    )
+
+
+def _likeliest(belief: dict[str, float]) -> str:
+    name, p = next(iter(belief.items()), ("", 0.0))
+    return f"{name} {p:.2f}" if name else ""
+
+
+def _print_closures(stored: StoredMap) -> None:
+    from afkb.store.shapes import closures_json
+
+    rows = [
+        (c["node"], c["predicted_as"], f"{c['probability']:.2f}", f"{c['displacement']:.2f}",
+         c["seen_from"])
+        for c in closures_json(stored)
+    ]
+    if rows:
+        columns = ["loop closed by", "predicted as", "p", "off by (m)", "seen from"]
+        print_table(columns, rows, numbers=["p", "off by (m)"])
+
+
+def rooms(map_folder: MapArgument, as_json: JsonOption = False) -> None:
+    """Show the rooms of a map with the posterior over what each is for.
+
+    Example: afkb rooms merom --json
+    """
+    from afkb.store import load
+    from afkb.store.shapes import rooms_json
+
+    shapes = rooms_json(load(map_folder))
+    if as_json:
+        print_json(shapes)
+        return
+    rows = []
+    for room in shapes:
+        belief = room["belief"]
+        assert isinstance(belief, dict)
+        best = ", ".join(f"{name} {p:.2f}" for name, p in list(belief.items())[:3])
+        visited = "yes" if room["visited"] else "no"
+        rows.append((room["id"], f"{room['area']:.1f}", best, f"{room['x']:.2f}",
+                     f"{room['y']:.2f}", visited))
+    columns = ["room", "area (m²)", "belief", "x", "y", "visited"]
+    print_table(columns, rows, numbers=["area (m²)", "x", "y"])
+
+
+def query(
+    ctx: typer.Context,
+    arguments: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[MAP] [QUERY]",
+            help="The map, unless --map names it, and the query, unless --file does: SPARQL, or "
+            "@NAME for one of the library (--list).",
+            show_default=False,
+        ),
+    ] = None,
+    maps: Annotated[
+        list[Path] | None,
+        typer.Option("--map", metavar="MAP", help="A map to ask; may be given several times."),
+    ] = None,
+    file: Annotated[
+        Path | None, typer.Option("--file", metavar="FILE", help="Read the query from a file.")
+    ] = None,
+    form: Annotated[Format, typer.Option("--format", help="How to print.")] = Format.TABLE,
+    as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
+    list_named: Annotated[
+        bool, typer.Option("--list", help="List the queries of the library.")
+    ] = False,
+) -> None:
+    """Ask maps and the ontology in SPARQL 1.1; prefixes (afn:, geo:, prov:, …) are declared.
+
+    Example: afkb query kitchen 'SELECT ?n WHERE { ?n afn:affords afn:ContainAbility }'
+
+    Example: afkb query --map visit1 --map visit2 @room-beliefs --format csv
+    """
+    if list_named:
+        _print_library(as_json)
+        return
+    folders, sparql = _asked(arguments or [], maps or [], file)
+    from afkb.store import load
+    from afkb.store import query as ask
+
+    stored = [load(folder) for folder in folders]
+    ontology = state_of(ctx).host.knowledge_base.files
+    answer = ask(stored, sparql, ontology)
+    form = Format.JSON if as_json else form
+    if form is Format.TABLE:
+        print_table(answer.columns, answer.cells())
+    else:
+        print_text(answer.text(form.value))
+
+
+def _print_library(as_json: bool) -> None:
+    from afkb.store.named import named_queries
+
+    found = named_queries()
+    if as_json:
+        print_json([{"name": q.name, "about": q.about, "sparql": q.sparql} for q in found])
+    else:
+        print_table(["name", "answers"], [(f"@{q.name}", q.about) for q in found])
+
+
+def _asked(
+    arguments: list[str], maps: list[Path], file: Path | None
+) -> tuple[list[Path], str]:
+    """The maps and the query; wrong usage where one is missing or there is more."""
+    rest = list(arguments)
+    if not maps:
+        if not rest:
+            raise typer.BadParameter("which map? afkb query MAP 'SELECT …'")
+        maps = [Path(rest.pop(0))]
+    if (file is None) == (not rest) or len(rest) > 1:
+        raise typer.BadParameter("give one query, as an argument or with --file, not both")
+    if file is not None:
+        return maps, _read_query(file)
+    if rest[0].startswith("@"):
+        from afkb.store.named import named_query
+
+        return maps, named_query(rest[0]).sparql
+    return maps, rest[0]
+
+
+def _read_query(file: Path) -> str:
+    from afkb.errors import QueryError
+
+    try:
+        return file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise QueryError(f"{file}: can't be read as a query ({error})") from error
