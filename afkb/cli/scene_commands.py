@@ -190,8 +190,10 @@ def _asked(
         if not rest:
             raise typer.BadParameter("which map? afkb query MAP 'SELECT …'")
         maps = [Path(rest.pop(0))]
-    if (file is None) == (not rest) or len(rest) > 1:
-        raise typer.BadParameter("give one query, as an argument or with --file, not both")
+    if file is None and not rest:
+        raise typer.BadParameter("no query; give one as an argument, or with --file, or @NAME")
+    if len(rest) > (file is None):
+        raise typer.BadParameter(f"one query is enough; what is {rest[-1]!r}?")
     if file is not None:
         return maps, _read_query(file)
     if rest[0].startswith("@"):
