@@ -20,7 +20,7 @@ RESOLUTION_M = 0.05
 LOG_ODDS_OCCUPIED = 0.85
 """A beam's end is in an occupied cell with probability 0.70: the rest is pose and angle error."""
 LOG_ODDS_FREE = -0.4
-"""A cell that a beam passes is free with probability 0.60; less, as beams graze corners of cells."""
+"""A cell that a beam passes is free with probability 0.60; less, as beams graze corners."""
 LOG_ODDS_LIMIT = 3.5
 """Clamp (probability 0.03 to 0.97), so that what is moved away is gone after some ten looks."""
 MAX_FREE_RANGE_M = 15.0
@@ -70,11 +70,14 @@ class GridBuilder:
             return
         floor = np.asarray(floor_xy, dtype=np.float64).reshape(-1, 2)
         points = np.concatenate([obstacles, floor])
-        self._ensure(points)
-        verdict = np.zeros(self._log_odds.shape, dtype=np.int8)
-        verdict[self._cells(floor)] = -1
-        verdict[self._cells(obstacles)] = 1
-        self._apply(verdict)
+        if not len(points):
+            return
+        part = self._window(points)
+        verdict = np.zeros(self._log_odds[part].shape, dtype=np.int8)
+        for cells, value in ((floor, -1), (obstacles, 1)):
+            cols, rows = (self._cells(cells) - (part[1].start, part[0].start)).T
+            verdict[rows, cols] = value
+        self._apply(verdict, part)
 
     def _insert(self, sensor_xy: Points, ends_xy: Points, hit: NDArray[np.bool_]) -> None:
         from afkb_mapping.ray_kernel import trace_beams
@@ -83,25 +86,31 @@ class GridBuilder:
             return
         sensor = np.asarray(sensor_xy, dtype=np.float64)
         ends, hit = _shortened(sensor, ends_xy, hit)
-        self._ensure(np.concatenate([ends, sensor[None]]))
-        origin = self._first_cell * self._resolution
-        verdict = np.zeros(self._log_odds.shape, dtype=np.int8)
+        part = self._window(np.concatenate([ends, sensor[None]]))
+        verdict = np.zeros(self._log_odds[part].shape, dtype=np.int8)
+        corner = self._first_cell + np.array([part[1].start, part[0].start])
         trace_beams(
-            verdict, (sensor - origin) / self._resolution, (ends - origin) / self._resolution, hit
+            verdict, sensor / self._resolution - corner, ends / self._resolution - corner, hit
         )
-        self._apply(verdict)
+        self._apply(verdict, part)
 
-    def _apply(self, verdict: NDArray[np.int8]) -> None:
+    def _apply(self, verdict: NDArray[np.int8], part: tuple[slice, slice]) -> None:
         """One observation per cell: 1 occupied, -1 free, 0 not seen."""
-        update = np.where(verdict > 0, LOG_ODDS_OCCUPIED, np.where(verdict < 0, LOG_ODDS_FREE, 0.0))
-        self._seen |= verdict != 0
-        self._log_odds += update.astype(np.float32)
-        np.clip(self._log_odds, -LOG_ODDS_LIMIT, LOG_ODDS_LIMIT, out=self._log_odds)
+        update = np.array([0.0, LOG_ODDS_OCCUPIED, LOG_ODDS_FREE], dtype=np.float32)[verdict]
+        self._seen[part] |= verdict != 0
+        summed = self._log_odds[part] + update
+        self._log_odds[part] = np.clip(summed, -LOG_ODDS_LIMIT, LOG_ODDS_LIMIT)
 
-    def _cells(self, points_xy: Points) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Rows and columns of points inside the array."""
-        cells = np.floor(points_xy / self._resolution).astype(np.int64) - self._first_cell
-        return cells[:, 1], cells[:, 0]
+    def _cells(self, points_xy: Points) -> NDArray[np.int64]:
+        """(N, 2) column and row of each point in the array."""
+        return np.floor(points_xy / self._resolution).astype(np.int64) - self._first_cell
+
+    def _window(self, points_xy: Points) -> tuple[slice, slice]:
+        """Rows and columns that the points span, after growing the array to hold them."""
+        self._ensure(points_xy)
+        cells = self._cells(points_xy)
+        low, high = cells.min(axis=0), cells.max(axis=0) + 1
+        return slice(int(low[1]), int(high[1])), slice(int(low[0]), int(high[0]))
 
     def _ensure(self, points_xy: Points) -> None:
         """Grow the array where a point lies outside it."""
@@ -130,10 +139,11 @@ class GridBuilder:
         if not len(rows):
             return OccupancyGrid(np.full((1, 1), np.nan, np.float32), self._resolution, (0.0, 0.0))
         part = np.s_[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
-        probability = 1 / (1 + np.exp(-self._log_odds[part]))
-        probability = np.where(self._seen[part], probability, np.nan).astype(np.float32)
-        x, y = (self._first_cell + [cols[0], rows[0]]) * self._resolution
-        return OccupancyGrid(probability, self._resolution, (round(float(x), 6), round(float(y), 6)))
+        log_odds = np.where(self._seen[part], self._log_odds[part], np.float32(np.nan))
+        probability = (1 / (1 + np.exp(-log_odds))).astype(np.float32)
+        x, y = (self._first_cell + np.array([cols[0], rows[0]])) * self._resolution
+        origin = (round(float(x), 6), round(float(y), 6))
+        return OccupancyGrid(probability, self._resolution, origin)
 
 
 def _shortened(
@@ -147,9 +157,7 @@ def _shortened(
     return sensor + offsets * scale[:, None], hit & ~long
 
 
-def rasterise(
-    grid: OccupancyGrid, polygon_xy: Points, probability: float
-) -> OccupancyGrid:
+def rasterise(grid: OccupancyGrid, polygon_xy: Points, probability: float) -> OccupancyGrid:
     """The grid with a thing drawn into it: each cell at least as occupied as the thing is likely.
 
     For predicted and dynamic things (DESIGN §2: predicted things fill the grid too).

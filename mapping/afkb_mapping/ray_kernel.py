@@ -33,7 +33,8 @@ def trace_beams(
         for _ in range(abs(end_col - col) + abs(end_row - row)):
             if verdict[row, col] == 0:
                 verdict[row, col] = -1
-            if to_col < to_row:
+            # The end's row or column is kept once reached: rounding must not lead past the array.
+            if row == end_row or (col != end_col and to_col < to_row):
                 col += step_col
                 to_col += per_col
             else:
