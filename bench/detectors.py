@@ -53,9 +53,9 @@ def run_detectors(views: Iterable[View], detectors: Sequence[Any]) -> Run:
     for view in views:
         found: list[Detection] = []
         for detector in sorted(detectors, key=lambda d: d.stage):
-            start = time.perf_counter()
+            start = time.thread_time()
             new = list(detector.detect(view, tuple(found)))
-            run.milliseconds[detector.name].append(1e3 * (time.perf_counter() - start))
+            run.milliseconds[detector.name].append(1e3 * (time.thread_time() - start))
             found += new
         run.views.append((view.index, found))
     return run

@@ -38,8 +38,8 @@ class SurfaceSettings:
     @classmethod
     def from_knowledge(cls, knowledge_base: KnowledgeBase) -> SurfaceSettings:
         """The limits that the features state in the ontology; what they leave out stays."""
-        support = _parameters(knowledge_base, "SupportAbility")
-        block = _parameters(knowledge_base, "BlockAbility")
+        support = parameters(knowledge_base, "SupportAbility")
+        block = parameters(knowledge_base, "BlockAbility")
         base = cls()
         return cls(
             normal_to_up_deg=support.get("normal_to_up_deg", base.normal_to_up_deg),
@@ -48,7 +48,8 @@ class SurfaceSettings:
         )
 
 
-def _parameters(knowledge_base: KnowledgeBase, feature: str) -> Mapping[str, Limits]:
+def parameters(knowledge_base: KnowledgeBase, feature: str) -> Mapping[str, Limits]:
+    """Trapezoids that a feature states in the ontology, by name; empty for an unknown feature."""
     found = knowledge_base.features.get(feature)
     if found is None:
         return {}

@@ -1,0 +1,132 @@
+"""Things on one support, told apart from above."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from afkb_surfaces.noise import depth_sigma
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cluster:
+    """Pixels of one thing: coordinates, depth (m) and points in the map frame, all (N, …).
+
+    `support_height_m` is None where what it stands on isn't seen.
+    """
+
+    u: NDArray[np.int64]
+    v: NDArray[np.int64]
+    depth_m: NDArray[np.float32]
+    points: NDArray[np.float64]
+    shape: tuple[int, int]
+    support_height_m: float | None
+
+    @property
+    def sigma_m(self) -> float:
+        """Standard deviation of its depth, m."""
+        return float(depth_sigma(float(np.median(self.depth_m))))
+
+    @property
+    def image_box(self) -> tuple[int, int, int, int]:
+        """Half-open (u0, v0, u1, v1)."""
+        return int(self.u.min()), int(self.v.min()), int(self.u.max()) + 1, int(self.v.max()) + 1
+
+    @property
+    def cut_by_image(self) -> bool:
+        """Whether it reaches the image edge."""
+        u0, v0, u1, v1 = self.image_box
+        return u0 <= 1 or v0 <= 1 or u1 >= self.shape[1] - 1 or v1 >= self.shape[0] - 1
+
+
+def clusters_from_above(
+    flat: NDArray[np.int64],
+    depth_m: NDArray[np.float32],
+    points: NDArray[np.float32],
+    support_height_m: float | None,
+    cell_m: float,
+    min_pixels: int,
+) -> Iterator[Cluster]:
+    """Split pixels (flat indexes) where, seen from above, nothing lies between them.
+
+    A mug's far inner wall is separated from its front by a step in depth, but not from above:
+    its rim joins them.
+    """
+    xyz = points.reshape(-1, 3)[flat].astype(np.float64)
+    ij = np.floor(xyz[:, :2] / cell_m).astype(np.int64)
+    low = ij.min(axis=0) - 1
+    span = ij.max(axis=0) - low + 2
+    if span[0] * span[1] > 4_000_000:
+        return
+    grid = np.zeros((int(span[0]), int(span[1])), np.uint8)
+    ij -= low
+    grid[ij[:, 0], ij[:, 1]] = 1
+    joined = cv2.dilate(grid, np.ones((2, 2), np.uint8))
+    count, names = cv2.connectedComponents(joined, connectivity=8)
+    of = names[ij[:, 0], ij[:, 1]]
+    order = np.argsort(of, kind="stable")
+    starts = np.searchsorted(of[order], np.arange(1, count + 1))
+    for begin, end in zip(starts[:-1], starts[1:], strict=True):
+        if end - begin >= min_pixels:
+            member = order[begin:end]
+            v, u = np.divmod(flat[member], depth_m.shape[1])
+            yield Cluster(
+                u, v, depth_m[v, u], xyz[member], (depth_m.shape[0], depth_m.shape[1]),
+                support_height_m,
+            )
+
+
+@njit(cache=True)
+def surroundings(
+    u: NDArray[np.int64],
+    v: NDArray[np.int64],
+    depth_m: NDArray[np.float32],
+    points: NDArray[np.float32],
+    mine: NDArray[np.int32],
+    name: int,
+    support_height_m: float,
+    margin_m: float,
+) -> tuple[float, float, float, float]:
+    """What a thing's outline borders on: shares of attached, behind it, before it, missing.
+
+    Attached: the surface goes on, above the support, so that this is a part of something larger.
+    `mine` (H, W) holds `name` at the thing's pixels.
+    """
+    rows, cols = depth_m.shape
+    attached = behind = before = missing = total = 0
+    for k in range(len(u)):
+        z = depth_m[v[k], u[k]]
+        jump = 0.015 + 3.0 * depth_sigma(z)
+        for du, dv in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+            i, j = v[k] + dv, u[k] + du
+            if 0 <= i < rows and 0 <= j < cols and mine[i, j] == name:
+                continue
+            # speckle: look a little further for the next pixel that returned
+            reach = 1
+            while 0 <= i < rows and 0 <= j < cols and depth_m[i, j] <= 0 and reach < 4:
+                i, j, reach = i + dv, j + du, reach + 1
+            if not (0 <= i < rows and 0 <= j < cols):
+                total += 1
+                missing += 1
+                continue
+            if mine[i, j] == name:
+                continue
+            total += 1
+            other = depth_m[i, j]
+            if other <= 0:
+                missing += 1
+            elif other > z + jump:
+                behind += 1
+            elif other < z - jump:
+                before += 1
+            elif points[i, j, 2] > support_height_m + margin_m:
+                attached += 1
+            else:
+                behind += 1
+    total = max(total, 1)
+    return attached / total, behind / total, before / total, missing / total

@@ -1,0 +1,65 @@
+"""Intrinsic contain-ability: a closed, compact, convex body (paper §II.F: cans, cartons, boxes)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from afkb_containers.clusters import Cluster
+from afkb_containers.settings import ContainerSettings
+from afkb_surfaces.settings import membership
+
+SOLIDITY = (0.75, 0.90)
+"""Share of its image's convex hull that a body must fill: not at all below, fully above."""
+SLENDER = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class Solid:
+    """How much a thing is a closed body, 0 to 1, and the measures that say so (m)."""
+
+    degree: float
+    height_m: float
+    thickness_m: float
+    solidity: float
+
+
+def solid_of(cluster: Cluster, base_m: float, settings: ContainerSettings) -> Solid:
+    """Judge a thing by height, thickness and convexity; size from above is the caller's."""
+    top = float(np.percentile(cluster.points[:, 2], 98))
+    height = top - base_m
+    length, width = sides_from_above(cluster)
+    fill = image_solidity(cluster)
+    degree = (
+        membership(height, settings.solid_height_m)
+        * membership(width - cluster.sigma_m, settings.solid_thickness_m)
+        * min(max((fill - SOLIDITY[0]) / (SOLIDITY[1] - SOLIDITY[0]), 0.0), 1.0)
+    )
+    if max(height, length) > SLENDER * max(width, 1e-3):
+        degree = 0.0
+    return Solid(degree, height, width, fill)
+
+
+def sides_from_above(cluster: Cluster) -> tuple[float, float]:
+    """Longer and shorter side of the smallest rectangle around a thing, strays left out, m."""
+    xy = cluster.points[:, :2]
+    (cx, cy), (a, b), degrees = cv2.minAreaRect(xy.astype(np.float32))
+    turn = np.radians(degrees)
+    R = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    local = (xy - (cx, cy)) @ R
+    sides = np.subtract(*np.percentile(local, [98, 2], axis=0))
+    return float(max(sides)), float(min(sides))
+
+
+def image_solidity(cluster: Cluster) -> float:
+    """Share of the convex hull of its pixels that a thing fills, holes of lost pixels closed."""
+    u0, v0, u1, v1 = cluster.image_box
+    mask = np.zeros((v1 - v0 + 4, u1 - u0 + 4), np.uint8)
+    mask[cluster.v - v0 + 2, cluster.u - u0 + 2] = 1
+    mask = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
+    hull = cv2.convexHull(np.argwhere(mask)[:, ::-1].astype(np.int32))
+    full = np.zeros_like(mask)
+    cv2.fillConvexPoly(full, hull, 1)
+    return float(mask.sum() / max(int(full.sum()), 1))
