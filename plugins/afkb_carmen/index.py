@@ -1,0 +1,126 @@
+"""One pass over a log: where its scan lines are, and which odometry stands at each."""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.errors import BadFrame
+from afkb_carmen.lines import Pose, compose, invert, parse_odometry, poses_of
+from afkb_mapping.geometry import T_from_xy_yaw
+
+SCAN_TAGS = (b"FLASER", b"ROBOTLASER1")
+# A laser sits on its robot: poses that differ by more, or not always alike, say something else.
+_MOUNT_MAX_M = 2.0
+_MOUNT_SPREAD = 0.02
+_SAME_MOMENT_S = 1e-3
+
+
+@dataclass
+class LogIndex:
+    """Byte offset and line number of each scan line, and the laser's place on the robot.
+
+    `T_base_laser`: (4, 4) m. `chained`: (N, 3) pose at each scan from the steps of ODOM lines.
+    """
+
+    offsets: array[int] = field(default_factory=lambda: array("q"))
+    numbers: array[int] = field(default_factory=lambda: array("q"))
+    T_base_laser: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
+    chained: array[float] = field(default_factory=lambda: array("d"))
+
+    def T_chained(self, index: int) -> NDArray[np.float64]:
+        """Pose (4, 4) of the base at a scan, from ODOM lines alone."""
+        return T_from_xy_yaw(*self.chained[3 * index : 3 * index + 3])
+
+
+def build_index(path: Path, tag: bytes) -> LogIndex:
+    """Read the log once; only a few numbers a scan are kept."""
+    index, mount, chain = LogIndex(), _Mount(), _Chain()
+    for offset, number, line in lines(path):
+        this = line.partition(b" ")[0]
+        if this == tag:
+            index.offsets.append(offset)
+            index.numbers.append(number)
+            poses = poses_of(line)
+            if poses is not None:
+                mount.add(poses[0], poses[1])
+                chain.scan(poses[1], poses[2])
+            index.chained.extend(chain.pose)
+        elif this == b"ODOM":
+            chain.odometry(line)
+    index.T_base_laser = mount.T_base_laser()
+    return index
+
+
+def scan_tag(path: Path) -> bytes | None:
+    """The tag of the scans to read: FLASER if the log has any, for they repeat the others."""
+    found = {line.partition(b" ")[0] for _, _, line in lines(path)}
+    return next((tag for tag in SCAN_TAGS if tag in found), None)
+
+
+def lines(path: Path) -> Iterator[tuple[int, int, bytes]]:
+    """Byte offset, number (from 1) and bytes of every line."""
+    with path.open("rb") as file:
+        offset = 0
+        for number, line in enumerate(file, 1):
+            yield offset, number, line
+            offset += len(line)
+
+
+class _Mount:
+    """Where the laser sits on the robot, if the two poses of the scan lines tell."""
+
+    def __init__(self) -> None:
+        self._low = (math.inf,) * 3
+        self._high = (-math.inf,) * 3
+
+    def add(self, laser: Pose, robot: Pose) -> None:
+        at = compose(invert(robot), laser)
+        if all(map(math.isfinite, at)):
+            self._low = tuple(map(min, self._low, at))
+            self._high = tuple(map(max, self._high, at))
+
+    def T_base_laser(self) -> NDArray[np.float64]:
+        """Their constant difference; where it is none (corrected poses), the laser is the base."""
+        spread = [high - low for low, high in zip(self._low, self._high, strict=True)]
+        x, y, theta = ((a + b) / 2 for a, b in zip(self._low, self._high, strict=True))
+        if not max(spread) < _MOUNT_SPREAD or math.hypot(x, y) > _MOUNT_MAX_M:
+            return np.eye(4)
+        return T_from_xy_yaw(round(x, 6), round(y, 6), round(theta, 6))
+
+
+class _Chain:
+    """Raw odometry: the steps between ODOM lines, one after the other.
+
+    Some logs were written by a mapper that sets the odometry to its own estimate at each scan: the
+    scan then has the last ODOM line's stamp and another pose. Such a jump is no motion.
+    """
+
+    def __init__(self) -> None:
+        self.pose = Pose(0.0, 0.0, 0.0)
+        self._last: tuple[Pose, float] | None = None
+
+    def odometry(self, line: bytes) -> None:
+        try:
+            read = parse_odometry(line)
+        except BadFrame:
+            return  # ODOM poses are absolute: the next line makes up for the one that is cut short
+        self._take(read.robot, read.stamp)
+
+    def scan(self, robot: Pose, stamp: float) -> None:
+        jump = self._last is not None and abs(self._last[1] - stamp) < _SAME_MOMENT_S
+        self._take(robot, stamp, moved=not jump)
+
+    def _take(self, robot: Pose, stamp: float, moved: bool = True) -> None:
+        if not all(map(math.isfinite, robot)):
+            return
+        if moved:
+            before = self._last[0] if self._last is not None else Pose(0.0, 0.0, 0.0)
+            self.pose = compose(self.pose, compose(invert(before), robot))
+        self._last = (robot, stamp)
