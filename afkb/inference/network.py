@@ -1,0 +1,111 @@
+"""The Bayesian network, compiled from the knowledge base and from nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from afkb.errors import EvidenceError
+from afkb.inference.objects import ObjectNetwork
+from afkb.inference.relations import RelationshipNetwork
+from afkb.inference.rooms import RoomNetwork
+from afkb.knowledge import SOMETHING_ELSE, KnowledgeBase
+
+_AFFORDED = 0.5
+"""A feature at least this probable counts as afforded where a yes or no is needed."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Network:
+    """Posteriors over what things are, what else is there, and what rooms are for.
+
+    Exact: closed forms of the three networks that `afkb.inference.pgm` writes out for pgmpy, whose
+    variable elimination is the tests' oracle.
+    """
+
+    knowledge_base: KnowledgeBase
+    objects: ObjectNetwork
+    rooms: RoomNetwork
+    relations: RelationshipNetwork
+
+    @classmethod
+    def compile(cls, kb: KnowledgeBase) -> Network:
+        """Compile the network of a knowledge base; the same base gives the same network."""
+        return cls(
+            kb, ObjectNetwork.compile(kb), RoomNetwork.compile(kb), RelationshipNetwork.compile(kb)
+        )
+
+    def category_posterior(
+        self,
+        affordances: Mapping[str, float],
+        size_xyz: tuple[float, float, float],
+        top_height_m: float,
+    ) -> dict[str, float]:
+        """P(object category | affordances, size, height of its top), summing to 1.
+
+        `affordances`: feature to probability; those not named are unobserved, those near 0 were
+        looked for and not found. `size_xyz`: m. `SomethingElse` is among the keys.
+        Raises `EvidenceError` for unknown features and values out of range.
+        """
+        return self.objects.posterior(affordances, size_xyz, top_height_m)
+
+    def movability(self, posterior: Mapping[str, float]) -> tuple[str, float]:
+        """`Static` or `Dynamic`, whichever is more probable, and the mean weight of that kind.
+
+        Dynamic things weigh about 0.3 when maps are matched (paper §II.D.i).
+        """
+        share = {"Static": 0.0, "Dynamic": 0.0}
+        weight = {"Static": 0.0, "Dynamic": 0.0}
+        for name, p in posterior.items():
+            category = self.knowledge_base.categories.get(name)
+            if category is None:
+                raise EvidenceError(f"{name!r} is no object category of the ontology")
+            if name != SOMETHING_ELSE or len(posterior) == 1:
+                share[category.movability] += p
+                weight[category.movability] += p * category.matching_weight
+        kind = "Dynamic" if share["Dynamic"] > share["Static"] else "Static"
+        if not share[kind] > 0:
+            other = self.knowledge_base.categories[SOMETHING_ELSE]
+            return other.movability, other.matching_weight
+        return kind, weight[kind] / share[kind]
+
+    def evidence_of(
+        self,
+        affordances: Mapping[str, float],
+        size_xyz: tuple[float, float, float],
+        top_height_m: float,
+    ) -> tuple[str, ...]:
+        """Names of the evidence classes that such a thing counts for, in order of name.
+
+        A thing counts by the narrowest features that it affords: a closed package, which is also
+        a container, counts as closed.
+        """
+        likelihoods, _ = self.objects.observed(affordances, size_xyz, top_height_m)
+        return tuple(
+            name
+            for name, evidence in sorted(self.knowledge_base.evidence_classes.items())
+            if likelihoods.get(evidence.feature, 0.0) >= _AFFORDED
+            and evidence.holds(size_xyz, top_height_m)
+        )
+
+    def room_posterior(self, counts: Mapping[str, int]) -> dict[str, float]:
+        """P(room category | counts of evidence classes), summing to 1 (paper §II.F).
+
+        Classes absent from `counts` are unobserved; 0 says that they were looked for in vain.
+        `UnknownRoom` is among the keys. Raises `EvidenceError` for unknown names and bad counts.
+        """
+        return self.rooms.posterior(counts)
+
+    def write_bif(self, path: Path) -> None:
+        """Write the networks, as one without edges between them, in BIF."""
+        from afkb.inference.pgm import write_bif
+
+        write_bif(self, path)
+
+
+@lru_cache(maxsize=8)
+def network_of(kb: KnowledgeBase) -> Network:
+    """The network of a knowledge base, compiled once per base."""
+    return Network.compile(kb)

@@ -1,0 +1,178 @@
+"""What a thing is, given what it affords, its size and its height: the object network."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from afkb.errors import EvidenceError
+from afkb.inference.bands import (
+    SIZE_EDGES_M,
+    TOP_EDGES_M,
+    Array,
+    band_of,
+    even_bands,
+    size_bands,
+    top_bands,
+)
+from afkb.knowledge import SOMETHING_ELSE, Category, KnowledgeBase
+
+SUPPORT = "SupportAbility"
+LENGTH, WIDTH, HEIGHT, TOP = "Length", "Width", "Height", "TopHeight"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ObjectNetwork:
+    """Category with its features and measures as children; (C,) is the number of categories.
+
+    - `prior`: (C,) share of things in a home that are of the category.
+    - `features`: name to (C,) probability that a thing of the category affords it.
+    - `measures`: `Length`, `Width`, `Height`, `TopHeight` to (bands, C) probabilities.
+    - `implied`: feature to the broader ones, which are no further evidence beside it.
+    """
+
+    categories: tuple[str, ...]
+    prior: Array
+    features: Mapping[str, Array]
+    measures: Mapping[str, Array]
+    implied: Mapping[str, frozenset[str]]
+
+    @classmethod
+    def compile(cls, kb: KnowledgeBase) -> ObjectNetwork:
+        """The network of the categories, afbits, sizes and heights that the ontology states."""
+        names = tuple(kb.categories)
+        prior = np.array([c.expected_number for c in kb.categories.values()])
+        prior /= prior.sum()
+        return cls(
+            categories=names,
+            prior=prior,
+            features=_features(kb, prior),
+            measures=_measures(kb),
+            implied={name: _broader(kb, name) for name in kb.features},
+        )
+
+    def observed(
+        self,
+        affordances: Mapping[str, float],
+        size_xyz: tuple[float, float, float],
+        top_height_m: float,
+    ) -> tuple[dict[str, float], dict[str, int]]:
+        """The evidence as the network takes it: likelihoods of features, bands of measures.
+
+        A feature's probability p is virtual evidence with likelihoods (1 - p, p): 0.5 says
+        nothing, and a feature that isn't named is unobserved. What is implied by a narrower
+        feature is no evidence of its own. Of what affords support only the upper surface is
+        measured, so its own vertical extent is unobserved.
+        """
+        _check(affordances, size_xyz, top_height_m, self.implied)
+        implied = frozenset[str]().union(
+            *(self.implied[name] for name, p in affordances.items() if p >= 0.5)
+        )
+        likelihoods = {
+            name: float(p)
+            for name, p in sorted(affordances.items())
+            if name in self.features and name not in implied
+        }
+        width, length = sorted(size_xyz[:2])
+        bands = {TOP: band_of(top_height_m, TOP_EDGES_M)}
+        for name, value in ((LENGTH, length), (WIDTH, width), (HEIGHT, size_xyz[2])):
+            hidden = name == HEIGHT and affordances.get(SUPPORT, 0.0) >= 0.5
+            if value > 0 and not hidden:
+                bands[name] = band_of(value, SIZE_EDGES_M)
+        return likelihoods, bands
+
+    def posterior(
+        self,
+        affordances: Mapping[str, float],
+        size_xyz: tuple[float, float, float],
+        top_height_m: float,
+    ) -> dict[str, float]:
+        """P(category | evidence) in closed form; equal to variable elimination (tested)."""
+        likelihoods, bands = self.observed(affordances, size_xyz, top_height_m)
+        weights = self.prior.copy()
+        for name, p in likelihoods.items():
+            weights *= p * self.features[name] + (1.0 - p) * (1.0 - self.features[name])
+        for name, band in bands.items():
+            weights *= self.measures[name][band]
+        total = float(weights.sum())
+        if not total > 0:
+            raise EvidenceError(
+                f"no category can afford {dict(affordances)} at size {size_xyz} m, top at "
+                f"{top_height_m} m; check the strengths of 0 and 1 in the ontology's afbits"
+            )
+        return dict(zip(self.categories, (weights / total).tolist(), strict=True))
+
+
+def _features(kb: KnowledgeBase, prior: Array) -> dict[str, Array]:
+    afbits = [_inherited(kb, c) for c in kb.categories.values()]
+    used = sorted({f for bits in afbits for f in bits if kb.features[f].kind != "grasp"})
+    leak, breadth = kb.parameters["AfbitLeak"], kb.parameters["UnknownBreadth"]
+    other = np.array([name == SOMETHING_ELSE for name in kb.categories])
+    known_prior = np.where(other, 0.0, prior)
+    features: dict[str, Array] = {}
+    for name in used:
+        column = np.array([bits.get(name, leak) for bits in afbits])
+        if known_prior.sum() > 0:
+            mean = float(column @ known_prior / known_prior.sum())
+            column[other] = (1.0 - breadth) * mean + breadth * 0.5
+        features[name] = column
+    return features
+
+
+def _inherited(kb: KnowledgeBase, category: Category) -> dict[str, float]:
+    """The category's afbits, and those of its broader categories that it doesn't state itself."""
+    bits: dict[str, float] = {}
+    seen: set[str] = set()
+    current: Category | None = category
+    while current is not None and current.name not in seen:
+        seen.add(current.name)
+        bits = {**current.afbits, **bits}
+        current = kb.categories.get(current.broader) if current.broader else None
+    return bits
+
+
+def _measures(kb: KnowledgeBase) -> dict[str, Array]:
+    spread, noise = kb.parameters["SizeSpread"], kb.parameters["SizeNoise"]
+    height_noise = kb.parameters["HeightNoise"]
+    categories = kb.categories.values()
+    columns = {
+        LENGTH: [size_bands(*c.length_m, spread, noise) for c in categories],
+        WIDTH: [size_bands(*c.width_m, spread, noise) for c in categories],
+        HEIGHT: [size_bands(*c.height_m, spread, noise) for c in categories],
+        TOP: [
+            top_bands(*c.top_height_m, spread, height_noise)
+            if c.top_height_m is not None
+            else even_bands(TOP_EDGES_M)
+            for c in categories
+        ],
+    }
+    return {name: np.array(bands).T for name, bands in columns.items()}
+
+
+def _broader(kb: KnowledgeBase, name: str) -> frozenset[str]:
+    found: list[str] = []
+    broader = kb.features[name].broader
+    while broader is not None:
+        found.append(broader)
+        broader = kb.features[broader].broader
+    return frozenset(found)
+
+
+def _check(
+    affordances: Mapping[str, float],
+    size_xyz: tuple[float, float, float],
+    top_height_m: float,
+    known: Mapping[str, object],
+) -> None:
+    for name, p in affordances.items():
+        if name not in known:
+            raise EvidenceError(f"{name!r} is no feature of the ontology; see `afkb ontology show`")
+        if not (math.isfinite(p) and 0 <= p <= 1):
+            raise EvidenceError(f"{name} has probability {p}, which is not in 0..1")
+    if len(size_xyz) != 3 or not all(math.isfinite(v) and v >= 0 for v in size_xyz):
+        raise EvidenceError(f"size {tuple(size_xyz)}: expected three finite extents in metres")
+    if not math.isfinite(top_height_m):
+        raise EvidenceError(f"top height {top_height_m}: expected a finite height in metres")

@@ -1,0 +1,64 @@
+"""What else is there, given what was seen: duals and co-occurrences as conditional tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from afkb.errors import EvidenceError
+from afkb.inference.bands import Array
+from afkb.knowledge import KnowledgeBase
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RelationshipNetwork:
+    """Seen → predicted, one conditional table per statement of the ontology.
+
+    - `duals`: dual to P(predicted is there | its evidence is there) (paper §II.D.ii).
+    - `rules`: co-occurrence rule to (C,) P(predicted is there | category of the seen thing): the
+      rule's strength, or that of the strongest listed pair of the same feature (paper §II.D.iii).
+    """
+
+    categories: tuple[str, ...]
+    duals: Mapping[str, float]
+    rules: Mapping[str, Array]
+
+    @classmethod
+    def compile(cls, kb: KnowledgeBase) -> RelationshipNetwork:
+        """The tables of the duals and co-occurrences that the ontology states."""
+        names = tuple(kb.categories)
+        rules: dict[str, Array] = {}
+        for rule in (c for c in kb.co_occurrences if c.is_rule):
+            listed: dict[str | None, float] = {}
+            for pair in kb.co_occurrences:
+                if not pair.is_rule and pair.feature == rule.feature:
+                    strongest = max(pair.strength, listed.get(pair.evidence_category, 0.0))
+                    listed[pair.evidence_category] = strongest
+            rules[rule.name] = np.array([listed.get(n, rule.strength) for n in names])
+        return cls(names, {d.name: d.strength for d in kb.duals}, rules)
+
+    def dual(self, name: str) -> float:
+        """P(the predicted thing is there) by one dual, its evidence seen, however often."""
+        if name not in self.duals:
+            raise EvidenceError(
+                f"{name!r} is no dual of the ontology; there are: {_list(self.duals)}"
+            )
+        return self.duals[name]
+
+    def co_occurrence(self, name: str, category: Mapping[str, float]) -> float:
+        """P(the predicted thing is there) by a rule, given the seen thing's category posterior."""
+        if name not in self.rules:
+            raise EvidenceError(
+                f"{name!r} is no co-occurrence rule of the ontology; there are: {_list(self.rules)}"
+            )
+        weights = np.array([category.get(c, 0.0) for c in self.categories])
+        total = float(weights.sum())
+        if not total > 0:
+            raise EvidenceError("the category posterior of the seen thing is empty")
+        return float(self.rules[name] @ weights / total)
+
+
+def _list(names: Mapping[str, object]) -> str:
+    return ", ".join(names) or "none"

@@ -1,0 +1,109 @@
+"""The knowledge base: what the ontology and its extensions state, typed and read once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+
+from afkb.errors import KnowledgeError
+from afkb.knowledge.content import Content, read_content
+from afkb.knowledge.model import (
+    Category,
+    CoOccurrence,
+    Dual,
+    EvidenceClass,
+    Feature,
+    RoomCategory,
+    Scale,
+)
+
+
+def bundled_ontology() -> Path:
+    """The ontology that comes with the package: in the wheel, else in the checkout."""
+    package = Path(__file__).parent.parent
+    for folder in (package / "_ontology", package.parent / "ontology"):
+        if (folder / "afnet.owl").is_file():
+            return folder / "afnet.owl"
+    raise KnowledgeError(f"{package / '_ontology' / 'afnet.owl'}: missing; reinstall afkb")
+
+
+class KnowledgeBase:
+    """AfNet/AfRob as the rest of the program sees it (paper §II.A to §II.D).
+
+    Lazy: nothing is read before the first question. `ontology` replaces the bundled file;
+    `extensions` are RDF/XML files whose statements are added. Every bad file, missing term or
+    contradiction is a `KnowledgeError` that names the file.
+    """
+
+    def __init__(self, ontology: Path | None = None, extensions: Sequence[Path] = ()) -> None:
+        self._ontology = Path(ontology) if ontology is not None else None
+        self._extensions = tuple(Path(p) for p in extensions)
+
+    def extended(self, paths: Sequence[Path]) -> KnowledgeBase:
+        """A knowledge base with these files added."""
+        return KnowledgeBase(self._ontology, (*self._extensions, *paths))
+
+    @cached_property
+    def files(self) -> tuple[Path, ...]:
+        """The ontology file and its extensions, in the order in which they are read."""
+        return (self._ontology or bundled_ontology(), *self._extensions)
+
+    @cached_property
+    def _content(self) -> Content:
+        return read_content(self.files)
+
+    @property
+    def features(self) -> Mapping[str, Feature]:
+        """Affordance features by name."""
+        return self._content.features
+
+    @property
+    def categories(self) -> Mapping[str, Category]:
+        """Object categories by name, `SomethingElse` among them."""
+        return self._content.categories
+
+    @property
+    def rooms(self) -> Mapping[str, RoomCategory]:
+        """Room categories by name, `UnknownRoom` among them."""
+        return self._content.rooms
+
+    @property
+    def duals(self) -> tuple[Dual, ...]:
+        """Affordance duals, each direction by itself, by name."""
+        return self._content.duals
+
+    @property
+    def co_occurrences(self) -> tuple[CoOccurrence, ...]:
+        """Co-occurrence rules and listed pairs, by name."""
+        return self._content.co_occurrences
+
+    @property
+    def evidence_classes(self) -> Mapping[str, EvidenceClass]:
+        """What is counted to tell rooms apart, by name."""
+        return self._content.evidence_classes
+
+    @property
+    def scales(self) -> Mapping[str, Scale]:
+        """Scales by name, from small to large."""
+        return self._content.scales
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """Numbers that the network takes from the ontology, by name."""
+        return self._content.parameters
+
+    def scale_of(self, size_xyz: tuple[float, float, float]) -> str:
+        """Name of the scale of a thing of that size, m: by its largest extent."""
+        largest = max(size_xyz)
+        for scale in self.scales.values():
+            if scale.extent_m[0] <= largest < scale.extent_m[1]:
+                return scale.name
+        raise KnowledgeError(f"{self.files[0]}: no scale covers an extent of {largest} m; add one")
+
+    def iri(self, name: str) -> str:
+        """The full IRI of a term by its name; `KnowledgeError` for a name that nothing has."""
+        found = self._content.iris.get(name)
+        if found is None:
+            raise KnowledgeError(f"no term named {name!r} in {', '.join(map(str, self.files))}")
+        return found

@@ -1,0 +1,75 @@
+"""Everything an ontology states, read and checked at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+from afkb.knowledge import reading
+from afkb.knowledge.consistency import check_references
+from afkb.knowledge.facts import Facts, read_facts
+from afkb.knowledge.model import (
+    Category,
+    CoOccurrence,
+    Dual,
+    EvidenceClass,
+    Feature,
+    RoomCategory,
+    Scale,
+)
+from afkb.knowledge.names import fragment
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """The typed items by name, the numbers for the network, and the IRI of every name."""
+
+    features: Mapping[str, Feature]
+    scales: Mapping[str, Scale]
+    categories: Mapping[str, Category]
+    duals: tuple[Dual, ...]
+    co_occurrences: tuple[CoOccurrence, ...]
+    evidence_classes: Mapping[str, EvidenceClass]
+    rooms: Mapping[str, RoomCategory]
+    parameters: Mapping[str, float]
+    iris: Mapping[str, str]
+
+
+def read_content(files: Sequence[Path]) -> Content:
+    """Read the files and check that what they refer to exists; `KnowledgeError` with the file."""
+    facts = read_facts(files)
+    scales = reading.read_all(facts, "Scale", reading.read_scale)
+    duals = reading.read_all(facts, "Dual", reading.read_dual)
+    pairs = reading.read_all(facts, "CoOccurrence", reading.read_co_occurrence)
+    content = Content(
+        features=reading.read_features(facts),
+        scales=MappingProxyType(dict(sorted(scales.items(), key=lambda s: s[1].extent_m))),
+        categories=reading.read_categories(facts),
+        duals=tuple(duals[name] for name in sorted(duals)),
+        co_occurrences=tuple(pairs[name] for name in sorted(pairs)),
+        evidence_classes=reading.read_all(facts, "EvidenceClass", reading.read_evidence_class),
+        rooms=reading.read_rooms(facts),
+        parameters=MappingProxyType(
+            {
+                name: facts.number(iri, "value")
+                for name, iri in _by_name(facts, "NetworkParameter").items()
+            }
+        ),
+        iris=MappingProxyType(_all_names(facts)),
+    )
+    check_references(content, facts)
+    return content
+
+
+def _by_name(facts: Facts, class_name: str) -> dict[str, str]:
+    return {fragment(iri): iri for iri in facts.of_type(class_name)}
+
+
+def _all_names(facts: Facts) -> dict[str, str]:
+    """Name to IRI; where two namespaces share a name, the one that was read first keeps it."""
+    names: dict[str, str] = {}
+    for iri in facts.values:
+        names.setdefault(fragment(iri), iri)
+    return names
