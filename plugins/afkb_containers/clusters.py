@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 from afkb_surfaces.noise import depth_sigma
 
 
+MAX_GRID_CELLS = 4_000_000
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Cluster:
     """Pixels of one thing: coordinates, depth (m) and points in the map frame, all (N, …).
@@ -48,37 +51,58 @@ def clusters_from_above(
     flat: NDArray[np.int64],
     depth_m: NDArray[np.float32],
     points: NDArray[np.float32],
-    support_height_m: float | None,
+    support_height_m: float,
+    core_m: float,
     cell_m: float,
     min_pixels: int,
 ) -> Iterator[Cluster]:
-    """Split pixels (flat indexes) where, seen from above, nothing lies between them.
+    """Split pixels (flat indexes) where, seen from above, nothing tall lies between them.
 
     A mug's far inner wall is separated from its front by a step in depth, but not from above:
-    its rim joins them.
+    its rim joins them. Only what rises by core_m joins, so that a magazine under a mug doesn't
+    make one thing of them; lower points go to the thing within whose hull they lie.
     """
     xyz = points.reshape(-1, 3)[flat].astype(np.float64)
-    ij = np.floor(xyz[:, :2] / cell_m).astype(np.int64)
-    low = ij.min(axis=0) - 1
-    span = ij.max(axis=0) - low + 2
-    if span[0] * span[1] > 4_000_000:
+    tall = xyz[:, 2] > support_height_m + core_m
+    if tall.sum() < min_pixels // 2:
         return
-    grid = np.zeros((int(span[0]), int(span[1])), np.uint8)
+    ij = np.floor(xyz[:, :2] / cell_m).astype(np.int64)
+    low = ij[tall].min(axis=0) - 2
+    span = ij[tall].max(axis=0) - low + 3
+    if span[0] * span[1] > MAX_GRID_CELLS:
+        return
     ij -= low
-    grid[ij[:, 0], ij[:, 1]] = 1
-    joined = cv2.dilate(grid, np.ones((2, 2), np.uint8))
-    count, names = cv2.connectedComponents(joined, connectivity=8)
-    of = names[ij[:, 0], ij[:, 1]]
+    names = _names_from_above(ij[tall], (int(span[0]), int(span[1])))
+    on_grid = ((ij >= 0) & (ij < span)).all(axis=1)
+    of = np.zeros(len(flat), np.int32)
+    of[on_grid] = names[ij[on_grid, 0], ij[on_grid, 1]]
     order = np.argsort(of, kind="stable")
-    starts = np.searchsorted(of[order], np.arange(1, count + 1))
+    starts = np.searchsorted(of[order], np.arange(1, int(names.max()) + 2))
     for begin, end in zip(starts[:-1], starts[1:], strict=True):
-        if end - begin >= min_pixels:
-            member = order[begin:end]
+        member = order[begin:end]
+        if len(member) >= min_pixels and tall[member].sum() >= min_pixels // 2:
             v, u = np.divmod(flat[member], depth_m.shape[1])
-            yield Cluster(
-                u, v, depth_m[v, u], xyz[member], (depth_m.shape[0], depth_m.shape[1]),
-                support_height_m,
-            )
+            shape = (depth_m.shape[0], depth_m.shape[1])
+            yield Cluster(u, v, depth_m[v, u], xyz[member], shape, support_height_m)
+
+
+def _names_from_above(ij: NDArray[np.int64], shape: tuple[int, int]) -> NDArray[np.int32]:
+    """Connected groups of grid squares, from 1, each filled to its convex hull: (X, Y)."""
+    grid = np.zeros(shape, np.uint8)
+    grid[ij[:, 0], ij[:, 1]] = 1
+    count, parts, stats, _ = cv2.connectedComponentsWithStats(
+        cv2.dilate(grid, np.ones((2, 2), np.uint8)), connectivity=8
+    )
+    names = np.zeros(shape, np.int32)
+    for k in sorted(range(1, count), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA])):
+        x, y, w, h = (int(n) for n in stats[k, :4])
+        own = np.argwhere(parts[y : y + h, x : x + w] == k)
+        filled = np.zeros((h, w), np.uint8)
+        cv2.fillConvexPoly(filled, cv2.convexHull(own[:, ::-1].astype(np.int32)), 1)
+        part = names[y : y + h, x : x + w]
+        part[(filled > 0) & (part == 0)] = k
+        part[own[:, 0], own[:, 1]] = k
+    return names
 
 
 @njit(cache=True)

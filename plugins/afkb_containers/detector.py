@@ -68,7 +68,7 @@ class ContainerDetector:
             if end - begin >= self.settings.min_pixels:
                 yield from clusters_from_above(
                     flat[begin:end], depth_m, points, float(supports.heights_m[k]),
-                    self.settings.cell_m, self.settings.min_pixels,
+                    self.settings.core_m, self.settings.cell_m, self.settings.min_pixels,
                 )
 
     def _judge(

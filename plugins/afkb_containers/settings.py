@@ -19,6 +19,7 @@ class ContainerSettings:
     - `size_m`: longer side, seen from above, of a thing that stands on a support.
     - `depth_m`: how deep an opening is; `solid_height_m`, `solid_thickness_m`: of a closed body,
       which keep books, frames, screens and game controllers out.
+    - `core_m`: what rises less over its support, a magazine or a cloth, joins nothing.
     - `above_m`: lowest and highest point of a thing over its support that is looked at.
     """
 
@@ -26,6 +27,7 @@ class ContainerSettings:
     depth_m: Limits = (0.008, 0.025, math.inf, math.inf)
     solid_height_m: Limits = (0.058, 0.075, 0.35, 0.50)
     solid_thickness_m: Limits = (0.022, 0.036, math.inf, math.inf)
+    core_m: float = 0.032
     above_m: tuple[float, float] = (0.012, 0.50)
     min_pixels: int = 90
     cell_m: float = 0.01
