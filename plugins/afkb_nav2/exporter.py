@@ -31,6 +31,8 @@ def pixels(grid: OccupancyGrid) -> NDArray[np.uint8]:
     A predicted thing at the least start value, 0.65 (paper §II.E), is just above the threshold:
     rounding goes towards occupied, so that a planner keeps clear of it.
     """
+    if grid.probability.size == 0:
+        return np.full((1, 1), UNKNOWN, dtype=np.uint8)
     known = np.isfinite(grid.probability)
     p = np.clip(np.where(known, grid.probability, 0.5), 0.0, 1.0).astype(np.float64)
     grey = np.floor(255.0 * (1.0 - p) + 1e-4).astype(np.uint8)

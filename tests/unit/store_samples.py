@@ -97,6 +97,13 @@ def sample_entities() -> tuple[Entity, ...]:
     return table, mug, doubtful, predicted
 
 
+def pose_row(stamp: float, x: float, y: float) -> list[float]:
+    """A row of the trajectory: the stamp, then T_map_base row by row."""
+    T = np.eye(4)
+    T[:2, 3] = x, y
+    return [stamp, *T.ravel()]
+
+
 def sample_grid() -> OccupancyGrid:
     probability = np.full((30, 60), np.nan, dtype=np.float32)
     probability[2:28, 2:58] = 0.05
@@ -122,7 +129,7 @@ def sample_map() -> TopologicalMap:
         ),
         grid=sample_grid(),
         T_map_source=np.eye(4),
-        trajectory=np.array([[0, 0, 0], [0.5, 0.4, 0.7], [1, 1, 1.57]], dtype=np.float64),
+        trajectory=np.array([pose_row(0, 0, 0), pose_row(5, 0.5, 0.4), pose_row(9, 1, 1)]),
         closures=(Closure("n1", NodeKind.DUAL, 0.7, 0.12, "p2", 9.25),),
         notes=("n10: its top returns almost no depth; its extent is unknown",),
         counts={"frames": 41, "skipped_frames": 1},
