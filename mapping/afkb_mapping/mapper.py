@@ -14,6 +14,7 @@ from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
 from afkb_mapping.grounding import fits, ground, joined, same_prediction
 from afkb_mapping.ids import Ids
+from afkb_mapping.grid_input import insert_view
 from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
 from afkb_mapping.snapshot import MapContent, snapshot
@@ -82,7 +83,7 @@ class AffordanceMapper:
     def _enter(self, view: View) -> None:
         assert view.T_map_base is not None
         self._trajectory.append((view.stamp, view.T_map_base))
-        self._grid.insert(view)
+        insert_view(self._grid, view)
 
     def _confirm(self, observed: Sequence[ObservedTrack | None], view: View) -> None:
         for track in dict.fromkeys(t for t in observed if t is not None):

@@ -24,10 +24,10 @@ class AffordanceMapperFactory:
 
     def __call__(self, rule: str) -> Mapper:
         """A fresh mapper with the named update rule."""
-        from afkb.inference import Network
+        from afkb.inference import network_of
         from afkb_mapping.mapper import AffordanceMapper
 
-        return AffordanceMapper(self.knowledge_base, Network.compile(self.knowledge_base), rule)
+        return AffordanceMapper(self.knowledge_base, network_of(self.knowledge_base), rule)
 
 
 @hookimpl

@@ -30,6 +30,10 @@ from afkb_mapping.rooms import Segmentation, segment_rooms
 from afkb_mapping.tracks import ObservedTrack, PredictedTrack
 
 
+STEP_M = 0.05
+"""What is lower than this, a carpet or a sill, a robot drives over."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class MapContent:
     """What a mapper knows when it is asked for the map."""
@@ -132,13 +136,14 @@ def _with_things(grid: OccupancyGrid, entities: Sequence[Entity]) -> OccupancyGr
     With its probability, times its matching weight: dynamic things fill the grid weakly.
     """
     for entity in entities:
-        if "Floor" in entity.category_belief and entity.position_xyz[2] == 0.0:
-            continue
-        grid = rasterise(
-            grid,
-            (entity.position_xyz[0], entity.position_xyz[1]),
-            entity.size_xyz[:2],
-            entity.yaw,
-            entity.existence * entity.matching_weight,
-        )
+        if entity.polygon_xy is not None and _stands_in_the_way(entity):
+            grid = rasterise(grid, entity.polygon_xy, entity.existence * entity.matching_weight)
     return grid
+
+
+def _stands_in_the_way(entity: Entity) -> bool:
+    """The floor and what lies flat on it do not; things on a support are within its outline."""
+    top = entity.position_xyz[2]
+    if "SupportAbility" not in entity.affordances:
+        top += entity.size_xyz[2] / 2
+    return top > STEP_M

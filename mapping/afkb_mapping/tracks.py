@@ -85,13 +85,13 @@ class ObservedTrack:
     empty_from: Viewpoints = field(default_factory=Viewpoints)
     observations: int = 0
     pixels: int = 0
+    pixels_of_known_extent: int = 0
     first_seen: float = math.inf
     last_seen: float = -math.inf
     last_view: int = -1
     places: dict[str, None] = field(default_factory=dict)
     detectors: dict[str, None] = field(default_factory=dict)
     evidence: list[str] = field(default_factory=list)
-    extent_known: bool = False
     predicted_first: NodeKind | None = None
     predicted_from: dict[str, None] = field(default_factory=dict)
     axioms: dict[str, None] = field(default_factory=dict)
@@ -101,7 +101,18 @@ class ObservedTrack:
         """Feature name to probability: mean over the views that spoke of it."""
         return {n: total / w for n, (w, total) in sorted(self.affordance_sums.items())}
 
-    def see(self, detection: Detection, view_index: int, stamp: float, camera_xy: NDArray[np.float64]) -> None:
+    @property
+    def extent_known(self) -> bool:
+        """Whether most of what was seen of it tells how far it reaches."""
+        return 2 * self.pixels_of_known_extent >= self.pixels
+
+    def see(
+        self,
+        detection: Detection,
+        view_index: int,
+        stamp: float,
+        camera_xy: NDArray[np.float64],
+    ) -> None:
         """Take in one detection of it."""
         self.footprint.add(detection.footprint_xy)
         top = detection.position_xyz[2] if self.is_surface else detection.box.top
@@ -120,7 +131,7 @@ class ObservedTrack:
         self.first_seen, self.last_seen = min(self.first_seen, stamp), max(self.last_seen, stamp)
         self.last_view = view_index
         self.detectors[detection.detector] = None
-        self.extent_known |= detection.extent_known
+        self.pixels_of_known_extent += detection.n_pixels * detection.extent_known
         if len(self.evidence) < KEPT_EVIDENCE:
             self.evidence.append(_evidence(detection, view_index))
 
@@ -147,7 +158,7 @@ class ObservedTrack:
         ):
             mine_.update(theirs)
         self.evidence = (self.evidence + other.evidence)[:KEPT_EVIDENCE]
-        self.extent_known |= other.extent_known
+        self.pixels_of_known_extent += other.pixels_of_known_extent
         self.predicted_first = self.predicted_first or other.predicted_first
 
 

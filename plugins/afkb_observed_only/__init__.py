@@ -22,10 +22,10 @@ class ObservedOnlyFactory:
 
     def __call__(self, rule: str) -> Mapper:
         """A fresh mapper."""
-        from afkb.inference import Network
+        from afkb.inference import network_of
         from afkb_observed_only.mapper import ObservedOnlyMapper
 
-        return ObservedOnlyMapper(self.knowledge_base, Network.compile(self.knowledge_base))
+        return ObservedOnlyMapper(self.knowledge_base, network_of(self.knowledge_base))
 
 
 @hookimpl

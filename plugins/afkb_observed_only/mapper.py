@@ -12,6 +12,7 @@ from afkb.inference import Network
 from afkb.knowledge import KnowledgeBase
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
+from afkb_mapping.grid_input import insert_view
 from afkb_mapping.ids import Ids
 from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
@@ -37,7 +38,7 @@ class ObservedOnlyMapper:
         """Take in what was seen in one placed view."""
         assert view.T_map_base is not None
         self._trajectory.append((view.stamp, view.T_map_base))
-        self._grid.insert(view)
+        insert_view(self._grid, view)
         seen = [t for t in self._association.match(view, detections) if t is not None]
         place = self._places.visit(view, {t.id: None for t in seen if not t.is_floor})
         for track in seen:
