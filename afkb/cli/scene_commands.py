@@ -91,8 +91,13 @@ def _print_closures(stored: StoredMap) -> None:
     from afkb.store.shapes import closures_json
 
     rows = [
-        (c["node"], c["predicted_as"], f"{c['probability']:.2f}", f"{c['displacement']:.2f}",
-         c["seen_from"])
+        (
+            c["node"],
+            c["predicted_as"],
+            f"{c['probability']:.2f}",
+            f"{c['displacement']:.2f}",
+            c["seen_from"],
+        )
         for c in closures_json(stored)
     ]
     if rows:
@@ -118,8 +123,16 @@ def rooms(map_folder: MapArgument, as_json: JsonOption = False) -> None:
         assert isinstance(belief, dict)
         best = ", ".join(f"{name} {p:.2f}" for name, p in list(belief.items())[:3])
         visited = "yes" if room["visited"] else "no"
-        rows.append((room["id"], f"{room['area']:.1f}", best, f"{room['x']:.2f}",
-                     f"{room['y']:.2f}", visited))
+        rows.append(
+            (
+                room["id"],
+                f"{room['area']:.1f}",
+                best,
+                f"{room['x']:.2f}",
+                f"{room['y']:.2f}",
+                visited,
+            )
+        )
     columns = ["room", "area (m²)", "belief", "x", "y", "visited"]
     print_table(columns, rows, numbers=["area (m²)", "x", "y"])
 
@@ -181,9 +194,7 @@ def _print_library(as_json: bool) -> None:
         print_table(["name", "answers"], [(f"@{q.name}", q.about) for q in found])
 
 
-def _asked(
-    arguments: list[str], maps: list[Path], file: Path | None
-) -> tuple[list[Path], str]:
+def _asked(arguments: list[str], maps: list[Path], file: Path | None) -> tuple[list[Path], str]:
     """The maps and the query; wrong usage where one is missing or there is more."""
     rest = list(arguments)
     if not maps:

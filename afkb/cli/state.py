@@ -22,9 +22,9 @@ class CliState:
 def state_of(ctx: typer.Context) -> CliState:
     """The state a command runs with; commands of plugins take a `typer.Context` and call this.
 
-        @cli.command()
-        def stats(ctx: typer.Context, map_folder: Path) -> None:
-            host = state_of(ctx).host
+    @cli.command()
+    def stats(ctx: typer.Context, map_folder: Path) -> None:
+        host = state_of(ctx).host
     """
     state = ctx.find_object(CliState)
     if state is None:

@@ -1,10 +1,11 @@
 """The scene store: a map as RDF, its folder on disk, and SPARQL over it.
 
-    >>> from afkb.store import load, query
+>>> from afkb.store import load, query
 """
 
 from afkb.store.folder import check_out
-from afkb.store.query import QueryResult, query
+from afkb.store.results import QueryResult
+from afkb.store.sparql import query
 from afkb.store.stored import StoredMap, load
 from afkb.store.write import write_map
 

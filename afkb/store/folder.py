@@ -53,7 +53,8 @@ def _refuse_what_is_no_map(folder: Path) -> None:
 @contextmanager
 def scratch_beside(folder: Path) -> Iterator[Path]:
     """A fresh folder beside `folder`, on the same disk; gone afterwards if it is still there."""
-    scratch = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", suffix=".partial", dir=folder.parent))
+    prefix = f".{folder.name}."
+    scratch = Path(tempfile.mkdtemp(prefix=prefix, suffix=".partial", dir=folder.parent))
     try:
         scratch.chmod(0o777 & ~_umask())
         yield scratch

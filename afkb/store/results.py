@@ -132,5 +132,3 @@ def _binding(cell: Cell) -> dict[str, str]:
     if cell.datatype.value != "http://www.w3.org/2001/XMLSchema#string":
         return binding | {"datatype": cell.datatype.value}
     return binding
-
-

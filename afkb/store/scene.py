@@ -80,11 +80,8 @@ def _describe_run(
             value = parameters.get(fact)
             if isinstance(value, str | int | float):
                 scribe.say(activity, f"afn:{fact}", value)
-    makers = {
-        maker
-        for made in (*topological_map.entities, *topological_map.bounds)
-        for maker in made.generated_by
-    }
+    makers = {maker for entity in topological_map.entities for maker in entity.generated_by}
+    makers |= {maker for bound in topological_map.bounds for maker in bound.generated_by}
     for maker in sorted(makers):
         part = scribe.node(f"by-{maker}")
         scribe.say(part, "rdf:type", term("prov:Activity"))

@@ -71,7 +71,7 @@ class Scribe:
     def belief(
         self, about: NamedNode, kind: str, of: str, beliefs: Iterable[tuple[str, float]]
     ) -> None:
-        """State beliefs, each a named node: `about afn:<kind>Belief [afn:<of> …; probability …]`."""
+        """State beliefs, each a node with a name: `about afn:<kind>Belief [afn:<of> …]`."""
         for name, p in beliefs:
             belief = NamedNode(f"{about.value}-{kind}-{escaped(name)}")
             self.say(about, f"afn:{kind}Belief", belief)

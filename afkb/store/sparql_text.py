@@ -110,4 +110,3 @@ def _shortened(text: str, length: int = 24) -> str:
 def _last_name(sparql: str, line: int, column: int) -> str:
     found = re.search(r"(?<![\w?$])[\w.-]*:[\w.%-]*$", _line(sparql, line)[: column - 1])
     return found[0] if found else ""
-

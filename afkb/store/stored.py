@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pyoxigraph import Literal, NamedNode, RdfFormat, Store, parse
+from pyoxigraph import DefaultGraph, Literal, NamedNode, RdfFormat, Store, parse
 
 from afkb.errors import MapError
 from afkb.store.vocabulary import MAP_NODES, local_name, term
@@ -62,8 +62,8 @@ class StoredMap:
         import rdflib
 
         graph = rdflib.Graph(store="Oxigraph")
-        turtle = self.store.dump(format=RdfFormat.N_TRIPLES, from_graph=_default_graph())
-        return graph.parse(data=turtle, format="nt")
+        triples = self.store.dump(format=RdfFormat.N_TRIPLES, from_graph=DefaultGraph())
+        return graph.parse(data=triples or b"", format="nt")
 
     @cached_property
     def base(self) -> str:
@@ -73,12 +73,14 @@ class StoredMap:
     def instances(self, name: str) -> list[NamedNode]:
         """Everything of class `afn:<name>`, in order of id (`e2` before `e10`)."""
         quads = self.store.quads_for_pattern(None, term("rdf:type"), term(f"afn:{name}"))
-        return sorted((q.subject for q in quads), key=lambda n: _natural(local_name(n.value)))
+        named = [q.subject for q in quads if isinstance(q.subject, NamedNode)]
+        return sorted(named, key=lambda n: _natural(local_name(n.value)))
 
     def values(self, node: NamedNode, predicate: str) -> Iterator[NamedNode | Literal]:
         """What the scene states of a thing."""
         for quad in self.store.quads_for_pattern(node, term(predicate), None):
-            yield quad.object
+            if isinstance(quad.object, NamedNode | Literal):
+                yield quad.object
 
     def number(self, node: NamedNode, predicate: str, default: float = 0.0) -> float:
         """A number stated of a thing, or the default."""
@@ -86,8 +88,10 @@ class StoredMap:
 
     def names(self, node: NamedNode, predicate: str) -> list[str]:
         """Local names (or texts) of what is stated, sorted."""
-        found = [local_name(v.value) if isinstance(v, NamedNode) else v.value
-                 for v in self.values(node, predicate)]
+        found = [
+            local_name(v.value) if isinstance(v, NamedNode) else v.value
+            for v in self.values(node, predicate)
+        ]
         return sorted(found, key=_natural)
 
     def name(self, node: NamedNode, predicate: str) -> str | None:
@@ -119,7 +123,7 @@ class StoredMap:
 
     @cached_property
     def counts(self) -> dict[str, int]:
-        """What the run counted: frames, skipped frames, …"""
+        """What the run counted: frames, skipped frames and so on."""
         found: Counter[str] = Counter()
         for node in self.instances("Count"):
             found[self.name(node, "rdfs:label") or ""] = int(self.number(node, "rdf:value"))
@@ -129,12 +133,6 @@ class StoredMap:
     def notes(self) -> list[str]:
         """What the run wants a reader to know."""
         return sorted(v.value for v in self.values(NamedNode(self.base + "map"), "rdfs:comment"))
-
-
-def _default_graph() -> object:
-    from pyoxigraph import DefaultGraph
-
-    return DefaultGraph()
 
 
 def _natural(name: str) -> tuple[str, int, str]:

@@ -105,9 +105,9 @@ def describe_bound(scribe: Scribe, bound: Bound) -> None:
     """A straight piece of wall: its middle, its length, and the line itself."""
     node = scribe.node(bound.id)
     ends = np.array([bound.start_xy, bound.end_xy], dtype=np.float64)
-    middle, along = ends.mean(axis=0), ends[1] - ends[0]
+    (x, y), along = ends.mean(axis=0), ends[1] - ends[0]
     scribe.say(node, "rdf:type", term("afn:Bound"))
-    _position(scribe, node, *middle, 0.0)
+    _position(scribe, node, x, y, 0.0)
     scribe.say(node, "afn:length", float(np.hypot(*along)))
     scribe.say(node, "afn:yaw", float(np.arctan2(along[1], along[0])))
     scribe.say(node, "afn:observations", int(bound.observations))

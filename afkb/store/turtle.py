@@ -28,7 +28,7 @@ def to_turtle(triples: Iterable[Triple], base: str) -> bytes:
     ordered = canonical(triples)
     text = "".join(map(str, ordered))
     used = {prefix: iri for prefix, iri in PREFIXES.items() if iri in text} | {"scene": base}
-    written = serialize(ordered, format=RdfFormat.TURTLE, prefixes=used)
+    written = serialize(ordered, format=RdfFormat.TURTLE, prefixes=used) or b""
     # The serializer lists prefixes in the order of a hash map, which changes from run to run.
     lines = written.split(b"\n")
     head = sorted(line for line in lines if line.startswith(b"@prefix "))

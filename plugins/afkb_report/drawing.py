@@ -6,7 +6,11 @@ import math
 from collections.abc import Iterable, Sequence
 from html import escape
 
-Points = Iterable[Sequence[float]]
+import numpy as np
+from numpy.typing import NDArray
+
+Point = Sequence[float] | NDArray[np.float64]
+Points = Iterable[Point] | NDArray[np.float64]
 SCALE = 100.0
 
 
@@ -33,7 +37,7 @@ def circle(kind: str, x: float, y: float, radius: float, title: str = "") -> str
     return tag("circle", facts, title)
 
 
-def line(kind: str, start: Sequence[float], end: Sequence[float], title: str = "") -> str:
+def line(kind: str, start: Point, end: Point, title: str = "") -> str:
     """A straight line of a CSS class."""
     return path(kind, [start, end], False, title)
 
@@ -46,9 +50,7 @@ def path(kind: str, points: Points, closed: bool, title: str = "") -> str:
 
 def text(kind: str, x: float, y: float, content: str) -> str:
     """A label, centred on the point."""
-    return (
-        f'<text class="{escape(kind)}" x="{number(x)}" y="{number(-y)}">{escape(content)}</text>'
-    )
+    return f'<text class="{escape(kind)}" x="{number(x)}" y="{number(-y)}">{escape(content)}</text>'
 
 
 def group(kind: str, parts: Iterable[str]) -> str:

@@ -82,7 +82,9 @@ def _rooms(m: TopologicalMap) -> Iterator[str]:
             continue
         posterior = ", ".join(f"{name} {p:.2f}" for name, p in best(room.belief, 3))
         yield d.path(
-            f"room hue{number % 6}", room.polygon_xy, True,
+            f"room hue{number % 6}",
+            room.polygon_xy,
+            True,
             f"{room.id}: {posterior}; {room.area:.1f} m²",
         )
     for door in m.doorways:

@@ -23,8 +23,7 @@ class Names:
     """Knows the IRIs of a few individuals, as a knowledge base does."""
 
     known = frozenset(
-        "SupportAbility ContainAbility IntrinsicContainAbility SitAbility Table Desk Mug Bowl "
-        "Chair Kitchen Hallway Bedroom Office Bathroom".split()
+        ("SupportAbility", "ContainAbility", "Table", "Desk", "Mug", "Bowl", "Kitchen", "Hallway")
     )
 
     def iri(self, name: str) -> str:
@@ -34,8 +33,9 @@ class Names:
 
 
 def square(x: float, y: float, half: float) -> np.ndarray:
-    return np.array([[x - half, y - half], [x + half, y - half], [x + half, y + half],
-                     [x - half, y + half]])
+    return np.array(
+        [[x - half, y - half], [x + half, y - half], [x + half, y + half], [x - half, y + half]]
+    )
 
 
 def entity(id: str, kind: NodeKind = NodeKind.OBSERVED, **changes: object) -> Entity:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pyoxigraph import (
     NamedNode,
+    Quad,
     QueryBoolean,
     QuerySolutions,
     QueryTriples,
@@ -18,7 +19,7 @@ from afkb.errors import KnowledgeError, QueryError
 from afkb.store.results import QueryResult
 from afkb.store.sparql_text import refuse_writing, syntax_error
 from afkb.store.stored import StoredMap
-from afkb.store.vocabulary import PREFIXES
+from afkb.store.vocabulary import PREFIXES, escaped
 
 ONTOLOGY_GRAPH = "urn:afkb:ontology"
 
@@ -59,8 +60,6 @@ def dataset(maps: Sequence[StoredMap], ontology: Iterable[Path] = ()) -> Store:
 
 def graph_name(folder: Path, taken: set[str]) -> str:
     """`urn:afkb:map:<folder>`; a second folder of the same name gets a number."""
-    from afkb.store.vocabulary import escaped
-
     stem = name = f"urn:afkb:map:{escaped(folder.resolve().name)}"
     number = 1
     while name in taken:
@@ -70,9 +69,7 @@ def graph_name(folder: Path, taken: set[str]) -> str:
     return name
 
 
-def _in_graph(stored: StoredMap, graph: NamedNode) -> Iterable[object]:
-    from pyoxigraph import Quad
-
+def _in_graph(stored: StoredMap, graph: NamedNode) -> Iterable[Quad]:
     for quad in stored.store:
         yield Quad(quad.subject, quad.predicate, quad.object, graph)
 
