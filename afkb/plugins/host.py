@@ -47,8 +47,9 @@ def _load(manager: pluggy.PluginManager, found: EntryPoint) -> None:
         manager.register(found.load(), name=found.name)
         manager.check_pending()
     except (pluggy.PluginValidationError, ImportError, AttributeError, ValueError) as error:
+        reason = " ".join(str(error).split())
         raise PluginError(
-            f"plugin {found.name!r} of {origin} ({found.value}) does not load: {error}; "
+            f"plugin {found.name!r} of {origin} ({found.value}) does not load: {reason}; "
             f"mend it, or remove it with: pip uninstall {origin}"
         ) from error
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
+import pluggy
 import typer
-import typer.main
 
 from afkb.errors import KnowledgeError
 from afkb.knowledge import KnowledgeBase
+from afkb.plugins import PROJECT, hookspecs
 from afkb.testing.require import require
 
 
@@ -29,13 +29,16 @@ def check_ontology(path: Path, knowledge_base: KnowledgeBase) -> None:
     require(files, who, "is not among the files in use", "its path must reach SPARQL queries too")
 
 
-def check_commands(plugin: Any, knowledge_base: KnowledgeBase) -> None:
+def check_commands(plugin: object, knowledge_base: KnowledgeBase) -> None:
     """Raise unless each command that the plugin adds has help with an example.
 
     `plugin`: the module or object with the `afkb_commands` hook.
     """
     cli = typer.Typer()
-    plugin.afkb_commands(cli=cli, knowledge_base=knowledge_base)
+    manager = pluggy.PluginManager(PROJECT)
+    manager.add_hookspecs(hookspecs)
+    manager.register(plugin)
+    manager.hook.afkb_commands(cli=cli, knowledge_base=knowledge_base)
     who = f"plugin {getattr(plugin, '__name__', type(plugin).__name__)}"
     require(bool(cli.registered_commands), who, "adds no command", "use @cli.command()")
     for command in cli.registered_commands:

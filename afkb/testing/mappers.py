@@ -58,8 +58,9 @@ def _run(mapper: Mapper, views: Sequence[View], detections: Sequence[Detection])
 
 def check_map(result: TopologicalMap, knowledge_base: KnowledgeBase, who: str = "map") -> None:
     """Raise unless ids are unique and resolve, numbers are sane, and words are the ontology's."""
-    nodes = [n.id for n in (*result.places, *result.entities, *result.bounds, *result.doorways)]
-    nodes += [r.id for r in result.rooms]
+    nodes = [place.id for place in result.places] + [entity.id for entity in result.entities]
+    nodes += [bound.id for bound in result.bounds] + [door.id for door in result.doorways]
+    nodes += [room.id for room in result.rooms]
     twice = sorted({i for i in nodes if nodes.count(i) > 1})
     require(not twice, who, f"ids {twice} occur twice", "give each node an id of its own")
     ids = set(nodes)
@@ -78,9 +79,7 @@ def _check_entity(entity: Entity, ids: set[str], knowledge_base: KnowledgeBase, 
     at = f"{who}, {entity.id}"
     numbers = (*entity.position_xyz, *entity.size_xyz, entity.yaw)
     finite = all(math.isfinite(v) for v in numbers) and min(entity.size_xyz) >= 0
-    require(
-        finite, at, f"position, size or yaw {numbers}", "metres and radians, sizes not negative"
-    )
+    require(finite, at, f"position, size or yaw {numbers}", "metres and radians, no size negative")
     beliefs: Mapping[str, float] = {**entity.affordances, **entity.category_belief}
     rest = {"existence": entity.existence, "matching_weight": entity.matching_weight}
     for what, p in {**beliefs, **rest}.items():

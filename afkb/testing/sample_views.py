@@ -7,6 +7,7 @@ ahead of the robot and carries an open box and a closed one; a laser at 0.3 m se
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ TABLE_HEIGHT_M = 0.73
 _CAMERA = PinholeCamera(width=320, height=240, fx=262.5, fy=262.5, cx=159.5, cy=119.5)
 _CAMERA_HEIGHT_M, _CAMERA_PITCH = 1.25, 0.45
 _LASER_HEIGHT_M, _BEAMS = 0.30, 720
+_BEAM_STEP = 2 * math.pi / _BEAMS
 
 
 def _boxes() -> _Boxes:
@@ -74,6 +76,12 @@ def _base_camera() -> NDArray[np.float64]:
     return np.array(columns, dtype=np.float64)
 
 
+def _base_laser() -> NDArray[np.float64]:
+    T_base_laser = np.eye(4)
+    T_base_laser[2, 3] = _LASER_HEIGHT_M
+    return T_base_laser
+
+
 def _depth(T_map_camera: NDArray[np.float64]) -> NDArray[np.float32]:
     v, u = np.mgrid[: _CAMERA.height, : _CAMERA.width]
     rays = np.stack([(u - _CAMERA.cx) / _CAMERA.fx, (v - _CAMERA.cy) / _CAMERA.fy, u * 0 + 1.0], -1)
@@ -82,12 +90,17 @@ def _depth(T_map_camera: NDArray[np.float64]) -> NDArray[np.float32]:
     return z.astype(np.float32)
 
 
-def _scan(T_map_laser: NDArray[np.float64]) -> LaserScan:
-    step = 2 * math.pi / _BEAMS
-    angles = -math.pi + step * np.arange(_BEAMS)
+def _ranges(T_map_laser: NDArray[np.float64]) -> NDArray[np.float32]:
+    angles = -math.pi + _BEAM_STEP * np.arange(_BEAMS)
     rays = np.stack([np.cos(angles), np.sin(angles), 0 * angles], -1) @ T_map_laser[:3, :3].T
-    ranges = _cast(T_map_laser[:3, 3], rays).astype(np.float32)
-    return LaserScan(ranges, -math.pi, step, range_min_m=0.05, range_max_m=30.0)
+    return _cast(T_map_laser[:3, 3], rays).astype(np.float32)
+
+
+@lru_cache(maxsize=8)
+def _sensed(x: float, y: float, yaw: float) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Depth (H, W) and laser ranges (N,) from there; whoever hands them out copies them."""
+    T_map_base = _pose(x, y, yaw)
+    return _depth(T_map_base @ _base_camera()), _ranges(T_map_base @ _base_laser())
 
 
 def sample_view(
@@ -99,17 +112,16 @@ def sample_view(
     it is as a source gives it.
     """
     T_map_base = _pose(x, y, yaw)
-    T_base_camera, T_base_laser = _base_camera(), np.eye(4)
-    T_base_laser[2, 3] = _LASER_HEIGHT_M
+    depth_m, ranges_m = _sensed(x, y, yaw)
     return View(
         index=index,
         stamp=0.1 * index,
         T_odom_base=T_map_base,
-        depth_m=_depth(T_map_base @ T_base_camera),
+        depth_m=depth_m.copy(),
         camera=_CAMERA,
-        T_base_camera=T_base_camera,
-        scan=_scan(T_map_base @ T_base_laser),
-        T_base_laser=T_base_laser,
+        T_base_camera=_base_camera(),
+        scan=LaserScan(ranges_m.copy(), -math.pi, _BEAM_STEP, range_min_m=0.05, range_max_m=30.0),
+        T_base_laser=_base_laser(),
         T_map_base=T_map_base if placed else None,
     )
 

@@ -63,7 +63,9 @@ def _check_view(view: View, who: str) -> None:
         metres = float(np.median(seen)) < _FARTHEST_M
         require(metres, where, f"median depth is {np.median(seen):.0f} m", "convert it to metres")
     if view.scan is not None:
-        require(view.scan.hit.any(), where, "no laser beam came back", "check range_min and _max")
+        require(
+            bool(view.scan.hit.any()), where, "no laser beam came back", "check range_min and _max"
+        )
 
 
 def _check_slices(source: Source, first: Sequence[View | SkippedFrame], who: str) -> None:

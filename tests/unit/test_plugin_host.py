@@ -124,7 +124,7 @@ def test_detectors_come_coarse_before_fine_and_then_by_name(host: PluginHost) ->
 
 
 def test_an_unknown_name_lists_what_there_is(host: PluginHost) -> None:
-    with pytest.raises(PluginError, match=rr"no mapper named 'nobody'; registered: .*observed-only"):
+    with pytest.raises(PluginError, match=r"no mapper named 'nobody'; registered: .*observed-only"):
         host.mapper_factory("nobody")
 
 
@@ -153,7 +153,7 @@ def test_a_hook_with_a_wrong_parameter_is_refused(monkeypatch: pytest.MonkeyPatc
     entry = EntryPoint(name="wrong", value="anything", group="afkb")
     monkeypatch.setattr(host_module, "entry_points", lambda group: [entry])
     monkeypatch.setattr(EntryPoint, "load", lambda self: Wrong())
-    with pytest.raises(PluginError, match="'wrong'.*ontology"):
+    with pytest.raises(PluginError, match=r"'wrong'.*ontology"):
         PluginHost()
 
 
