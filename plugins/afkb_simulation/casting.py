@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +16,10 @@ from afkb_simulation.meshes import Mesh
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hits:
-    """What rays met: `distances` in units of each ray's direction (inf for nothing), `cosines`
-    of incidence in 0..1, `meshes` the index of the mesh hit, -1 for none; all of one shape.
+    """What rays met, arrays of one shape.
+
+    `distances` in units of each ray's direction, inf for nothing; `cosines` of incidence, 0..1;
+    `meshes` the index of the mesh hit, -1 for none.
     """
 
     distances: NDArray[np.float32]
@@ -35,11 +38,11 @@ class Caster:
                 f"ray casting needs Open3D, which doesn't load: {error}; on Debian or Ubuntu: "
                 "apt-get install libusb-1.0-0 libgl1 libegl1 libgomp1"
             ) from error
-        self._tensor = o3d.core.Tensor
-        self._scene = o3d.t.geometry.RaycastingScene()
+        self._as_tensor: Any = o3d.core.Tensor.from_numpy
+        self._scene: Any = o3d.t.geometry.RaycastingScene()
         for mesh in meshes:
-            vertices = self._tensor(mesh.vertices.astype(np.float32))
-            self._scene.add_triangles(vertices, self._tensor(mesh.triangles))
+            vertices = self._as_tensor(mesh.vertices.astype(np.float32))
+            self._scene.add_triangles(vertices, self._as_tensor(mesh.triangles))
 
     def cast(self, origin: NDArray[np.float64], directions: NDArray[np.float32]) -> Hits:
         """First hits of rays from one point (3,) along directions (..., 3), world frame, m."""
@@ -47,7 +50,7 @@ class Caster:
         rays = np.empty((*shape, 6), dtype=np.float32)
         rays[..., :3] = origin
         rays[..., 3:] = directions
-        found = self._scene.cast_rays(self._tensor(rays))
+        found = self._scene.cast_rays(self._as_tensor(rays))
         normals = found["primitive_normals"].numpy()
         along = np.abs(np.einsum("...i,...i->...", normals, directions))
         lengths = np.sqrt(np.einsum("...i,...i->...", directions, directions))

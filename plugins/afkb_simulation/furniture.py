@@ -87,9 +87,7 @@ def shelf(size: Size, parameters: Mapping[str, float]) -> Built:
         box((-x, -y + _BOARD, 0), (-x + 0.01, y - _BOARD, z - _BOARD)),
     ]
     boards = [box((-x, -y, h - _BOARD), (x, y, h)) for h in heights]
-    supports = tuple(
-        Support(h, -x + 0.01, -y + _BOARD, x, y - _BOARD) for h in heights
-    )
+    supports = tuple(Support(h, -x + 0.01, -y + _BOARD, x, y - _BOARD) for h in heights)
     return Built(merge([*sides, *boards]), z, supports)
 
 

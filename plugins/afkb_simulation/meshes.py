@@ -90,6 +90,4 @@ def lathe(profile_rz: Sequence[tuple[float, float]], stretch_y: float = 1.0) -> 
 def sphere(radius: float) -> Mesh:
     """A ball that lies on z = 0, m."""
     polar = np.linspace(0, np.pi, _SEGMENTS // 2 + 1)
-    return lathe(
-        [(radius * float(np.sin(a)), radius * (1 - float(np.cos(a)))) for a in polar]
-    )
+    return lathe([(radius * float(np.sin(a)), radius * (1 - float(np.cos(a)))) for a in polar])

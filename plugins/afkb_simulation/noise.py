@@ -22,27 +22,25 @@ def noisy_depth(
     edges and surfaces seen at a grazing angle drop out.
     """
     near, far = noise.range
-    z = np.where(np.isfinite(hits.distances), hits.distances, 0)
-    sigma = noise.axial_m + noise.axial_per_m2 * (z - 0.4) ** 2
-    measured = z + sigma * rng.standard_normal(z.shape, dtype=np.float32)
-    measured = _quantised(measured, focal_px, noise)
+    z = np.where(np.isfinite(hits.distances), hits.distances, np.float32(0))
+    sigma = noise.axial_m + noise.axial_per_m2 * np.square(z - np.float32(0.4))
+    blurred = z + sigma * rng.standard_normal(z.shape, dtype=np.float32)
+    measured = _quantised(blurred.astype(np.float32), focal_px, noise)
     lost = (z <= 0) | (measured < near) | (measured > far)
     lost |= hits.cosines < math.sin(math.radians(noise.grazing_deg))
     lost |= _at_edge(z) & (rng.random(z.shape, dtype=np.float32) < noise.edge_dropout)
     return np.where(lost, 0, measured).astype(np.float32)
 
 
-def _quantised(
-    z: NDArray[np.floating], focal_px: float, noise: SensorNoise
-) -> NDArray[np.floating]:
+def _quantised(z: NDArray[np.float32], focal_px: float, noise: SensorNoise) -> NDArray[np.float32]:
     if noise.disparity_step_px == 0:
         return z
     steps = focal_px * noise.baseline_m / noise.disparity_step_px
-    safe = np.maximum(z, 0.05)
-    return steps / np.maximum(np.rint(steps / safe), 1)
+    counted = np.rint(steps / np.maximum(z, 0.05))
+    return (steps / np.maximum(counted, 1)).astype(np.float32)
 
 
-def _at_edge(z: NDArray[np.floating]) -> NDArray[np.bool_]:
+def _at_edge(z: NDArray[np.float32]) -> NDArray[np.bool_]:
     """Pixels beside a depth jump of more than 3 % (both sides of it)."""
     edge = np.zeros(z.shape, dtype=np.bool_)
     across = np.abs(np.diff(z, axis=1)) > _EDGE_STEP * z[:, 1:]

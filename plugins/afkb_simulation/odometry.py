@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ def drifting(
     """
     bias = rng.standard_normal(3)
     poses = [np.eye(4)]
-    for before, after in zip(T_world_base[:-1], T_world_base[1:], strict=True):
+    for before, after in pairwise(T_world_base):
         step = np.linalg.inv(before) @ after
         error = bias + rng.standard_normal(3)
         metres, turned = float(np.hypot(step[0, 3], step[1, 3])), wrap_angle(yaw_of(step))

@@ -101,7 +101,7 @@ class Simulation:
     def _scan(self, index: int, laser: LaserFile, rng: np.random.Generator) -> LaserScan:
         start, increment = _beam_angles(laser)
         T = self.T_world_base[index] @ _T_base_laser(laser)
-        angles = start + increment * np.arange(laser.beams)
+        angles = start + increment * np.arange(laser.beams, dtype=np.float64)
         hits = self._caster(index).cast(T[:3, 3], turned(T, laser_rays(angles)))
         ranges = noisy_ranges(hits, laser.range, self.world.sensor_noise, rng)
         return LaserScan(ranges, start, increment, *laser.range)
@@ -128,9 +128,7 @@ class Simulation:
                 )
 
     def _in_doorway(self, stop: Stop) -> bool:
-        return any(
-            math.dist((stop.x, stop.y), d.at) <= d.width / 2 for d in self.world.doorways
-        )
+        return any(math.dist((stop.x, stop.y), d.at) <= d.width / 2 for d in self.world.doorways)
 
 
 def _is_there(placed: Placed, leg: int, waypoints: list[str]) -> bool:
@@ -152,14 +150,14 @@ def _T_base_camera(camera: CameraFile) -> NDArray[np.float64]:
     pitch = math.radians(camera.pitch_down_deg)
     c, s = math.cos(pitch), math.sin(pitch)
     T = np.eye(4)
-    T[:3, :3] = [[0, -s, c], [-1, 0, 0], [0, -c, -s]]
-    T[:3, 3] = camera.forward_m, 0, camera.height_m
+    T[:3, :3] = np.array([[0, -s, c], [-1, 0, 0], [0, -c, -s]])
+    T[:3, 3] = camera.forward_m, 0.0, camera.height_m
     return T
 
 
 def _T_base_laser(laser: LaserFile) -> NDArray[np.float64]:
     T = np.eye(4)
-    T[:3, 3] = laser.forward_m, 0, laser.height_m
+    T[:3, 3] = laser.forward_m, 0.0, laser.height_m
     return T
 
 

@@ -206,5 +206,3 @@ class WorldFile(_Strict):
     sensor_noise: SensorNoise = SensorNoise()
     odometry_drift: OdometryDrift = OdometryDrift()
     tour: TourFile
-
-
