@@ -32,12 +32,15 @@ class Footprint:
         self.cell_m = cell_m
         self._low = np.zeros(2, dtype=np.int64)
         self._hits = np.zeros((0, 0), dtype=np.uint16)
+        self._near: dict[int, NDArray[np.uint8]] = {}
 
     def __bool__(self) -> bool:
         return bool(self._hits.any())
 
     def _cells(self, points_xy: NDArray[np.float64]) -> NDArray[np.int64]:
-        return np.unique(np.floor(points_xy / self.cell_m).astype(np.int64), axis=0)
+        cells = np.floor(points_xy / self.cell_m).astype(np.int64)
+        keys = np.unique((cells[:, 0] << 32) + (cells[:, 1] + (1 << 31)))
+        return np.column_stack([keys >> 32, (keys & 0xFFFFFFFF) - (1 << 31)])
 
     def _grow(self, low: NDArray[np.int64], high: NDArray[np.int64]) -> None:
         if not self._hits.size:
@@ -55,6 +58,7 @@ class Footprint:
         """Count one view's points (N, 2), each cell once."""
         if not len(points_xy):
             return
+        self._near.clear()
         cells = self._cells(points_xy)
         self._grow(cells.min(axis=0), cells.max(axis=0))
         i, j = (cells - self._low).T
@@ -64,6 +68,7 @@ class Footprint:
         """Take over another footprint's counts."""
         if not other._hits.size:
             return
+        self._near.clear()
         self._grow(other._low, other._low + other._hits.shape - 1)
         i, j = other._low - self._low
         n, m = other._hits.shape
@@ -82,14 +87,25 @@ class Footprint:
         if not self or not len(points_xy):
             return 0.0
         reach = math.ceil(reach_m / self.cell_m)
-        near = self.mask(reach)
-        if reach:
-            disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
-            near = cv2.dilate(near, disc)
+        low = (self._low - reach) * self.cell_m
+        high = (self._low + self._hits.shape + reach) * self.cell_m
+        if (points_xy.max(axis=0) < low).any() or (points_xy.min(axis=0) > high).any():
+            return 0.0
+        near = self._within(reach)
         cells = self._cells(points_xy) - self._low + reach
         inside = ((cells >= 0) & (cells < near.shape)).all(axis=1)
         i, j = cells[inside].T
         return float(near[i, j].sum() / len(cells))
+
+    def _within(self, reach: int) -> NDArray[np.uint8]:
+        """Mask of the cells within `reach` cells, with that margin; kept until the next view."""
+        if reach not in self._near:
+            near = self.mask(reach)
+            if reach:
+                disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
+                near = cv2.dilate(near, disc)
+            self._near[reach] = near
+        return self._near[reach]
 
     def points(self) -> NDArray[np.float64]:
         """(N, 2) centres of its cells, m."""
