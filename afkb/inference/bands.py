@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-SIZE_EDGES_M: Array = np.geomspace(0.015, 4.0, 18)
+SIZE_EDGES_M: Array = np.asarray(np.geomspace(0.015, 4.0, 18), dtype=np.float64)
 """Edges between the bands of an extent, m; each band is 1.39 times as wide as the one before."""
-TOP_EDGES_M: Array = np.arange(1, 46) * 0.05
+TOP_EDGES_M: Array = 0.05 * np.arange(1, 46, dtype=np.float64)
 """Edges between the bands of the height of a top above the floor, m."""
 
 

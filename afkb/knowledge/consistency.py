@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 PARAMETERS = (
     "AfbitLeak",
+    "FaintestHypothesis",
     "HeightNoise",
     "ShareSeenHalf",
     "ShareSeenLittle",
