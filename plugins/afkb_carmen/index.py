@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -22,40 +22,53 @@ _MOUNT_SPREAD = 0.02
 _SAME_MOMENT_S = 1e-3
 
 
-@dataclass
+@dataclass(frozen=True, slots=True, eq=False)
 class LogIndex:
-    """Byte offset and line number of each scan line, and the laser's place on the robot.
+    """Where the scan lines are, in order of their stamps, and what takes the whole log to know.
 
-    `T_base_laser`: (4, 4) m. `chained`: (N, 3) pose at each scan from the steps of ODOM lines.
+    - `offsets`, `numbers`: (N,) byte offset and line number, from 1.
+    - `chained_xyt`: (N, 3) pose at each scan from the steps of ODOM lines, m and rad.
+    - `T_base_laser`: (4, 4) the laser's place on the robot, m.
     """
 
-    offsets: array[int] = field(default_factory=lambda: array("q"))
-    numbers: array[int] = field(default_factory=lambda: array("q"))
-    T_base_laser: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
-    chained: array[float] = field(default_factory=lambda: array("d"))
+    offsets: NDArray[np.int64]
+    numbers: NDArray[np.int64]
+    chained_xyt: NDArray[np.float64]
+    T_base_laser: NDArray[np.float64]
 
     def T_chained(self, index: int) -> NDArray[np.float64]:
         """Pose (4, 4) of the base at a scan, from ODOM lines alone."""
-        return T_from_xy_yaw(*self.chained[3 * index : 3 * index + 3])
+        return T_from_xy_yaw(*self.chained_xyt[index].tolist())
 
 
 def build_index(path: Path, tag: bytes) -> LogIndex:
     """Read the log once; only a few numbers a scan are kept."""
-    index, mount, chain = LogIndex(), _Mount(), _Chain()
+    found, stamps, chained = array("q"), array("d"), array("d")
+    mount, chain = _Mount(), _Chain()
     for offset, number, line in lines(path):
         this = line.partition(b" ")[0]
         if this == tag:
-            index.offsets.append(offset)
-            index.numbers.append(number)
             poses = poses_of(line)
             if poses is not None:
                 mount.add(poses[0], poses[1])
                 chain.scan(poses[1], poses[2])
-            index.chained.extend(chain.pose)
+            found.extend((offset, number))
+            stamps.append(_stamp(poses, stamps))
+            chained.extend(chain.pose)
         elif this == b"ODOM":
             chain.odometry(line)
-    index.T_base_laser = mount.T_base_laser()
-    return index
+    # Logs are written by several processes: neighbouring lines may be out of order.
+    order = np.argsort(np.array(stamps), kind="stable")
+    places = np.array(found, dtype=np.int64).reshape(-1, 2)[order]
+    chained_xyt = np.array(chained).reshape(-1, 3)[order]
+    return LogIndex(places[:, 0], places[:, 1], chained_xyt, mount.T_base_laser())
+
+
+def _stamp(poses: tuple[Pose, Pose, float] | None, earlier: array[float]) -> float:
+    """A scan line's stamp; a bad line keeps its place behind the line before it."""
+    if poses is not None and math.isfinite(poses[2]):
+        return poses[2]
+    return earlier[-1] if earlier else -math.inf
 
 
 def scan_tag(path: Path) -> bytes | None:

@@ -54,7 +54,7 @@ class CarmenSource:
         """Frames of the slice; each scan line is sought and parsed when its turn comes."""
         with self.path.open("rb") as file:
             for index in range(len(self))[start:stop:stride]:
-                file.seek(self.index.offsets[index])
+                file.seek(int(self.index.offsets[index]))
                 try:
                     yield self._view(index, self._parse(file.readline()))
                 except BadFrame as error:

@@ -1,0 +1,422 @@
+"""The bag source: real recordings, bags that rosbags' writers made, and every kind of bad bag."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bag_samples import (
+    CAMERA_FRAME,
+    HEIGHT,
+    INFO,
+    WIDTH,
+    BagWriter,
+    millimetres,
+    png,
+    put_depth,
+    robot,
+    wall,
+)
+
+from afkb.errors import SourceError
+from afkb.flow import SkippedFrame, View
+from afkb.plugins.protocols import Source
+from afkb.testing import check_source
+from afkb_rosbag import afkb_open_source
+from afkb_rosbag.topics import camera_info_beside
+
+
+def open_bag(path: Path, **options: str) -> Source:
+    source = afkb_open_source(str(path), options, None)  # type: ignore[arg-type]
+    assert source is not None
+    return source
+
+
+def refusal(path: Path, **options: str) -> str:
+    with pytest.raises(SourceError) as refused:
+        open_bag(path, **options)
+    assert "\n" not in str(refused.value)
+    return str(refused.value)
+
+
+def all_views(source: Source) -> list[View]:
+    frames = list(source.views())
+    assert all(isinstance(f, View) for f in frames), frames
+    return [f for f in frames if isinstance(f, View)]
+
+
+@pytest.fixture(scope="module")
+def home(data_dir: Path) -> Path:
+    return data_dir / "homes" / "pomaria"
+
+
+def test_recorded_home_keeps_the_contract(home: Path) -> None:
+    check_source(open_bag(home / "bag"), at_most=3)
+
+
+def test_recorded_home_has_everything_a_view_can_have(home: Path) -> None:
+    truth = json.loads((home / "truth.json").read_text())
+    source = open_bag(home / "bag")
+    assert len(source) == truth["frames"]
+    assert source.gravity_aligned
+    (view,) = source.views(3, 4)
+    assert isinstance(view, View)
+    assert view.index == 3
+    assert view.camera is not None
+    assert view.camera.fx == 525
+    assert view.T_base_camera is not None
+    assert view.T_base_camera[2, 3] == pytest.approx(1.15)  # the README: camera 1.15 m up
+    assert view.T_base_laser is not None
+    assert view.scan is not None
+    assert view.scan.ranges_m.size == 720
+    assert view.has_base
+
+
+def test_recorded_poses_are_the_odometry_that_was_recorded(home: Path) -> None:
+    truth = json.loads((home / "truth.json").read_text())["views"]
+    source = open_bag(home / "bag", depth_topic="none")
+    for view, true in zip(all_views(source), truth, strict=True):
+        x, y, yaw = true["odom"]
+        assert view.stamp == pytest.approx(true["stamp"])
+        np.testing.assert_allclose(view.T_odom_base[:2, 3], [x, y], atol=1e-3)
+        np.testing.assert_allclose(view.T_odom_base[:2, 0], [np.cos(yaw), np.sin(yaw)], atol=1e-3)
+
+
+def test_bare_mcap_reads_like_its_folder(home: Path) -> None:
+    bare = open_bag(home / "bag" / "bag.mcap")
+    (a,), (b,) = bare.views(5, 6), open_bag(home / "bag").views(5, 6)
+    assert isinstance(a, View)
+    assert isinstance(b, View)
+    np.testing.assert_array_equal(a.depth_m, b.depth_m)
+    np.testing.assert_array_equal(a.T_odom_base, b.T_odom_base)
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+@pytest.mark.parametrize("kind", ["16UC1", "32FC1", "compressed16", "compressed32"])
+def test_depth_in_every_form_means_the_same_metres(tmp_path: Path, storage: str, kind: str) -> None:
+    source = open_bag(robot(BagWriter(), depth=kind).write(tmp_path / "b", storage))
+    views = all_views(source)
+    assert len(views) == len(source) == 6
+    for k, view in enumerate(views):
+        assert view.depth_m is not None
+        expected = wall(2 + 0.1 * k)
+        # quantisation of 1 / depth: half a step of depth² / A, with A = 100 · 101
+        tolerance = 1e-3 if kind != "compressed32" else 1.1 * float(expected.max()) ** 2 / 10100
+        np.testing.assert_allclose(view.depth_m, expected, atol=tolerance)
+        assert view.depth_m[0, 0] == 0
+
+
+def test_ros1_bag_reads_like_the_ros2_one(tmp_path: Path) -> None:
+    one = all_views(open_bag(robot(BagWriter(ros1=True)).write(tmp_path / "one.bag")))
+    two = all_views(open_bag(robot(BagWriter()).write(tmp_path / "two")))
+    for a, b in zip(one, two, strict=True):
+        assert a.stamp == b.stamp
+        np.testing.assert_array_equal(a.depth_m, b.depth_m)
+        np.testing.assert_allclose(a.T_odom_base, b.T_odom_base)
+        assert a.scan is not None
+        assert b.scan is not None
+        np.testing.assert_array_equal(a.scan.ranges_m, b.scan.ranges_m)
+
+
+def test_folder_of_one_bag_file_opens(tmp_path: Path) -> None:
+    bag = robot(BagWriter()).write(tmp_path / "b")
+    (bag / "metadata.yaml").unlink()
+    assert len(open_bag(bag)) == 6
+
+
+def test_chain_of_transforms_is_composed(tmp_path: Path) -> None:
+    """base_link → mast (1 m up) → camera (0.1 m ahead, optical): links multiply in that order."""
+    view = all_views(open_bag(robot(BagWriter()).write(tmp_path / "b")))[2]
+    assert view.T_base_camera is not None
+    np.testing.assert_allclose(view.T_base_camera[:3, 3], [0.1, 0, 1.0], atol=1e-9)
+    np.testing.assert_allclose(view.T_base_camera[:3, 2], [1, 0, 0], atol=1e-9)  # looks ahead
+    np.testing.assert_allclose(view.T_odom_base[:3, 3], [0.2, 0, 0], atol=1e-9)
+
+
+def test_poses_between_two_transforms_are_interpolated(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), frames=1, odom=False, tf=False)
+    half = np.pi / 8
+    bag.tf(0.9, "odom", "base_link", (0, 0, 0))
+    bag.tf(1.1, "odom", "base_link", (1, 0, 0), (0, 0, np.sin(half), np.cos(half)))
+    (view,) = all_views(open_bag(bag.write(tmp_path / "b")))
+    assert view.T_odom_base[0, 3] == pytest.approx(0.5)
+    assert np.arctan2(view.T_odom_base[1, 0], view.T_odom_base[0, 0]) == pytest.approx(np.pi / 8)
+
+
+def test_odometry_topic_serves_where_tf_has_no_motion(tmp_path: Path) -> None:
+    views = all_views(open_bag(robot(BagWriter(), tf=False).write(tmp_path / "b")))
+    assert [round(v.T_odom_base[0, 3], 6) for v in views] == [0, 0.1, 0.2, 0.3, 0.4, 0.5]
+
+
+def test_chosen_odometry_topic_comes_before_tf(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), odom=False)
+    for k in range(6):
+        bag.odometry(1.0 + 0.2 * k, 7.0)
+    path = bag.write(tmp_path / "b")
+    assert all_views(open_bag(path))[5].T_odom_base[0, 3] == pytest.approx(0.5)
+    assert all_views(open_bag(path, odom_topic="/odom"))[5].T_odom_base[0, 3] == pytest.approx(7)
+
+
+def test_chosen_odom_frame_takes_corrected_poses(tmp_path: Path) -> None:
+    bag = robot(BagWriter())
+    for k in range(6):
+        bag.tf(1.0 + 0.2 * k, "map", "odom", (0, 5, 0))
+    source = open_bag(bag.write(tmp_path / "b"), odom_frame="map")
+    assert all_views(source)[5].T_odom_base[1, 3] == pytest.approx(5)
+
+
+def test_hand_held_camera_has_its_body_for_a_base(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), scan=False, odom=False, tf=False, statics=False)
+    for k in range(6):
+        bag.tf(1.0 + 0.2 * k, "world", CAMERA_FRAME, (0, 0, k), (-0.5, 0.5, -0.5, 0.5))
+    source = open_bag(bag.write(tmp_path / "b"))
+    view = all_views(source)[2]
+    assert not view.has_base
+    assert not source.gravity_aligned
+    np.testing.assert_allclose(view.T_odom_base[:3, :3], np.eye(3), atol=1e-9)
+    assert view.T_odom_base[2, 3] == pytest.approx(2)
+
+
+def test_scan_taken_later_is_placed_where_the_laser_was_then(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), frames=2, scan=False)
+    bag.scan(1.05)  # the robot drives 0.5 m/s
+    first = all_views(open_bag(bag.write(tmp_path / "b")))[0]
+    assert first.T_base_laser is not None
+    assert first.T_base_laser[0, 3] == pytest.approx(0.2 + 0.05 * 0.5)
+
+
+def test_scan_too_far_in_time_is_left_out(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), frames=2, scan=False)
+    bag.scan(1.0)
+    first, second = all_views(open_bag(bag.write(tmp_path / "b")))
+    assert first.scan is not None
+    assert second.scan is None
+
+
+def test_messages_recorded_late_find_their_frame(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), scan=False)
+    for k in range(6):
+        bag.scan(1.0 + 0.2 * k, delay=0.5)
+    source = open_bag(bag.write(tmp_path / "b"))
+    assert all(v.scan is not None for v in all_views(source))
+    (third,) = source.views(3, 4)
+    assert isinstance(third, View)
+    assert third.scan is not None
+
+
+def test_laser_only_bag_gives_views_without_depth(tmp_path: Path) -> None:
+    views = all_views(open_bag(robot(BagWriter(), depth=None).write(tmp_path / "b")))
+    assert len(views) == 6
+    assert all(v.depth_m is None and v.scan is not None for v in views)
+
+
+def test_sensors_can_be_left_out(tmp_path: Path) -> None:
+    path = robot(BagWriter()).write(tmp_path / "b")
+    assert all(v.scan is None for v in all_views(open_bag(path, scan_topic="none")))
+    assert all(v.depth_m is None for v in all_views(open_bag(path, depth_topic="none")))
+
+
+def test_colour_and_infrared_images_are_not_taken_for_depth(tmp_path: Path) -> None:
+    bag = robot(BagWriter())
+    for k in range(20):
+        t = 1.0 + 0.05 * k
+        bag.image(t, np.zeros((HEIGHT, WIDTH, 3), np.uint8), "rgb8", "/camera/color/image_raw")
+        bag.image(t, np.ones((HEIGHT, WIDTH), np.uint16), "mono16", "/camera/ir/image_raw")
+    source = open_bag(bag.write(tmp_path / "b"))
+    assert len(source) == 6
+    assert len(all_views(source)) == 6
+
+
+def test_unset_stamps_fall_back_to_time_of_recording(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), frames=3)
+    for _, _, kind, message in bag.messages:
+        if kind == "sensor_msgs/msg/Image":
+            message.header.stamp.sec = message.header.stamp.nanosec = 0
+    stamps = [v.stamp for v in all_views(open_bag(bag.write(tmp_path / "b")))]
+    assert stamps == pytest.approx([1.0, 1.2, 1.4])
+
+
+def test_big_endian_images_are_read(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), frames=1, depth=None)
+    bag.image(1.0, millimetres(wall()).astype(">u2"), "16UC1")
+    bag.camera_info(1.0)
+    (view,) = all_views(open_bag(bag.write(tmp_path / "b")))
+    assert view.depth_m is not None
+    np.testing.assert_allclose(view.depth_m, wall(), atol=1e-3)
+
+
+def test_slices_keep_index_and_content(tmp_path: Path) -> None:
+    source = open_bag(robot(BagWriter(), frames=9).write(tmp_path / "b"))
+    whole = all_views(source)
+    part = list(source.views(2, 8, 3))
+    assert [f.index for f in part] == [2, 5]
+    for frame in part:
+        assert isinstance(frame, View)
+        np.testing.assert_array_equal(frame.depth_m, whole[frame.index].depth_m)
+    assert list(source.views(20)) == []
+
+
+@pytest.mark.parametrize(
+    ("topic", "info"),
+    [
+        ("/camera/depth/image_raw", "/camera/depth/camera_info"),
+        ("/camera/depth/image_raw/compressedDepth", "/camera/depth/camera_info"),
+        ("/depth_registered/image", "/depth_registered/camera_info"),
+    ],
+)
+def test_camera_info_lies_beside_its_image(topic: str, info: str) -> None:
+    assert camera_info_beside(topic) == info
+
+
+# Bad input
+
+
+def with_bad_frame(tmp_path: Path, bad: bytes, stated: str = "16UC1; compressedDepth") -> str:
+    """Why the middle one of three frames is skipped when its data is `bad`."""
+    bag = robot(BagWriter(), frames=3, depth=None)
+    for k, data in enumerate([b"\0" * 12 + png(millimetres(wall())), bad, None]):
+        good = b"\0" * 12 + png(millimetres(wall()))
+        bag.compressed(1.0 + 0.2 * k, good if data is None else data, stated)
+        bag.camera_info(1.0 + 0.2 * k)
+    frames = list(open_bag(bag.write(tmp_path / "b")).views())
+    assert [type(f) for f in frames] == [View, SkippedFrame, View]
+    assert isinstance(frames[1], SkippedFrame)
+    assert "/camera/depth/image_raw/compressedDepth at 1.200 s" in frames[1].where
+    return frames[1].why
+
+
+def test_truncated_png_is_skipped(tmp_path: Path) -> None:
+    data = b"\0" * 12 + png(millimetres(wall()))
+    assert "cut short" in with_bad_frame(tmp_path, data[:-30])
+
+
+def test_damaged_png_is_skipped(tmp_path: Path) -> None:
+    data = bytearray(b"\0" * 12 + png(millimetres(wall())))
+    data[len(data) // 2] ^= 0xFF
+    assert "damaged" in with_bad_frame(tmp_path, bytes(data))
+
+
+@pytest.mark.parametrize(
+    ("pixels", "why"),
+    [
+        (np.full((HEIGHT, WIDTH), 9, np.uint8), "8 bits"),
+        (np.zeros((HEIGHT, WIDTH), np.uint16), "no valid pixel"),
+        (np.full((HEIGHT, WIDTH), 65535, np.uint16), "no valid pixel"),
+        (np.full((HEIGHT, WIDTH + 2), 900, np.uint16), "the camera says"),
+    ],
+)
+def test_unusable_depth_is_skipped(tmp_path: Path, pixels: np.ndarray, why: str) -> None:
+    assert why in with_bad_frame(tmp_path, b"\0" * 12 + png(pixels))
+
+
+@pytest.mark.parametrize("data", [b"", b"short", b"\0" * 12 + b"no image at all"])
+def test_data_that_is_no_png_is_skipped(tmp_path: Path, data: bytes) -> None:
+    assert "compressedDepth" in with_bad_frame(tmp_path, data)
+
+
+def test_gap_in_tf_skips_the_frames_in_it(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), frames=12, odom=False)
+    bag.messages = [m for m in bag.messages if m[1] != "/tf" or not 1.5 < m[0] / 1e9 < 2.5]
+    frames = list(open_bag(bag.write(tmp_path / "b")).views())
+    skipped = [f for f in frames if isinstance(f, SkippedFrame)]
+    assert [f.index for f in skipped] == [3, 4, 5, 6, 7]
+    assert "tf odom → base_link: no transform within 0.1 s" in skipped[0].why
+
+
+def test_invalid_transform_counts_as_missing(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), frames=3, odom=False, tf=False)
+    bag.tf(1.0, "odom", "base_link", (0, 0, 0))
+    bag.tf(1.2, "odom", "base_link", (float("nan"), 0, 0))
+    bag.tf(1.4, "odom", "base_link", (0, 0, 0), (0, 0, 0, 0))
+    frames = list(open_bag(bag.write(tmp_path / "b")).views())
+    assert [type(f) for f in frames] == [View, SkippedFrame, SkippedFrame]
+
+
+def test_scan_without_beams_is_skipped(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), frames=2, depth=None, scan=False)
+    bag.scan(1.0)
+    bag.scan(1.2, beams=0)
+    frames = list(open_bag(bag.write(tmp_path / "b")).views())
+    assert [type(f) for f in frames] == [View, SkippedFrame]
+
+
+def test_bag_without_camera_info_is_refused(tmp_path: Path) -> None:
+    why = refusal(robot(BagWriter(), info=False).write(tmp_path / "b"))
+    assert "no CameraInfo for /camera/depth/image_raw" in why
+    assert INFO in why
+
+
+def test_bag_with_zero_intrinsics_is_refused(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), info=False)
+    bag.camera_info(1.0, f=0.0)
+    assert f"{INFO}: camera intrinsics {WIDTH}x{HEIGHT} fx=0.0" in refusal(bag.write(tmp_path / "b"))
+
+
+def test_bag_without_depth_and_scan_is_refused(tmp_path: Path) -> None:
+    why = refusal(robot(BagWriter(), depth=None, scan=False).write(tmp_path / "b"))
+    assert "no depth image and no laser scan" in why
+    assert "/odom (nav_msgs/msg/Odometry)" in why
+
+
+def test_bag_without_poses_is_refused(tmp_path: Path) -> None:
+    why = refusal(robot(BagWriter(), odom=False, tf=False).write(tmp_path / "b"))
+    assert "no poses for 'base_link'" in why
+
+
+def test_bag_without_a_chain_to_the_camera_is_refused(tmp_path: Path) -> None:
+    why = refusal(robot(BagWriter(), statics=False).write(tmp_path / "b"))
+    assert f"no tf leads from 'base_link' to the sensor frame '{CAMERA_FRAME}'" in why
+
+
+@pytest.mark.parametrize("ending", ["bag", "mcap", "db3"])
+def test_random_bytes_are_refused(tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"noise.{ending}"
+    path.write_bytes(np.random.default_rng(3).bytes(5000))
+    assert f"noise.{ending}: not a readable bag" in refusal(path)
+    path.write_bytes(b"")
+    assert "not a readable bag" in refusal(path)
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_bag_cut_short_is_refused(tmp_path: Path, storage: str) -> None:
+    folder = robot(BagWriter()).write(tmp_path / "b", storage)
+    (file,) = (p for p in folder.iterdir() if p.suffix != ".yaml")
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    assert "not a readable bag" in refusal(folder)
+
+
+def test_folder_with_broken_metadata_is_refused(tmp_path: Path) -> None:
+    folder = robot(BagWriter()).write(tmp_path / "b")
+    (folder / "metadata.yaml").write_text("rosbag2_bagfile_information: [")
+    assert "not a readable bag" in refusal(folder)
+
+
+def test_folder_of_several_bags_without_metadata_is_refused(tmp_path: Path) -> None:
+    folder = robot(BagWriter()).write(tmp_path / "b")
+    (folder / "metadata.yaml").unlink()
+    shutil.copy(folder / "b.mcap", folder / "c.mcap")
+    assert "name one of them" in refusal(folder)
+
+
+def test_options_are_checked(tmp_path: Path) -> None:
+    path = robot(BagWriter()).write(tmp_path / "b")
+    assert "unknown option 'dept_topic'" in refusal(path, dept_topic="/x")
+    assert "depth_topic=/x: no such topic" in refusal(path, depth_topic="/x")
+    assert "option max_dt='soon'" in refusal(path, max_dt="soon")
+    assert "camera_info_topic=/x: no such topic" in refusal(path, camera_info_topic="/x")
+
+
+def test_other_paths_are_left_to_other_sources(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("nothing")
+    for uri in (str(tmp_path), str(tmp_path / "notes.txt"), "world:home", str(tmp_path / "no.bag")):
+        assert afkb_open_source(uri, {}, None) is None  # type: ignore[arg-type]
+
+
+def test_depth_and_its_compressed_copy_are_one_camera(tmp_path: Path) -> None:
+    bag = robot(BagWriter())
+    for k in range(6):
+        put_depth(bag, 1.0 + 0.2 * k, wall(), "compressed16")
+    assert len(all_views(open_bag(bag.write(tmp_path / "b")))) == 6
