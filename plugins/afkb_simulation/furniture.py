@@ -47,6 +47,7 @@ def couch(size: Size, parameters: Mapping[str, float]) -> Built:
     x, y, z, seat = size[0] / 2, size[1] / 2, size[2], parameters["seat_m"]
     back, arm, arm_top = 0.25, 0.18, min(size[2], seat + 0.2)
     parts = [
+        *_legs(-x, -y, x, y, 0.05),
         box((-x, -y, 0.05), (x, y, seat)),
         box((-x, -y, seat), (-x + back, y, z)),
         box((-x + back, -y, seat), (x, -y + arm, arm_top)),
@@ -59,6 +60,7 @@ def bed(size: Size, parameters: Mapping[str, float]) -> Built:
     """A frame with a mattress, and a headboard at the rear."""
     x, y, z = size[0] / 2, size[1] / 2, size[2]
     parts = [
+        *_legs(-x, -y, x, y, 0.08),
         box((-x, -y, 0.08), (x, y, z - 0.2)),
         box((-x + 0.05, -y + 0.02, z - 0.2), (x - 0.02, y - 0.02, z)),
         box((-x, -y, z - 0.2), (-x + 0.05, y, max(z, parameters["headboard_m"]))),
