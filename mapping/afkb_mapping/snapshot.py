@@ -26,6 +26,7 @@ from afkb_mapping.edges import edges_of
 from afkb_mapping.entities import observed_entities, predicted_entities, supports_expected
 from afkb_mapping.occupancy import rasterise
 from afkb_mapping.places import Place
+from afkb_mapping.room_lookup import RoomLookup, room_id
 from afkb_mapping.rooms import Segmentation, segment_rooms
 from afkb_mapping.tracks import ObservedTrack, PredictedTrack
 
@@ -54,6 +55,7 @@ class MapContent:
 def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> TopologicalMap:
     """The `TopologicalMap` of a mapper's content."""
     segmentation = segment_rooms(content.grid)
+    lookup = RoomLookup(segmentation, content.grid)
     observed = observed_entities(content.tracks, content.network)
     known = {e.id for e in observed}
     entities = [*observed, *predicted_entities(content.predictions, content.network, known)]
@@ -61,20 +63,20 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
     entities = [
         replace(
             e,
-            room=segmentation.room_at(*e.position_xyz[:2]),
+            room=lookup.room_at(*e.position_xyz[:2]),
             supported_by=e.supported_by or supports.get(e.id),
         )
         for e in entities
     ]
-    places = [_robot_place(p, segmentation) for p in content.places]
-    bounds = [_bound_in_room(b, segmentation) for b in content.bounds]
+    places = [_robot_place(p, lookup) for p in content.places]
+    bounds = [_bound_in_room(b, lookup) for b in content.bounds]
     seen = {p.id: [i for i in p.seen if i in known] for p in content.places}
     return TopologicalMap(
         places=tuple(places),
         entities=tuple(entities),
         bounds=tuple(bounds),
         doorways=tuple(_doorways(segmentation)),
-        rooms=tuple(_rooms(segmentation, entities, places, content)),
+        rooms=tuple(_rooms(segmentation, lookup, entities, places, content)),
         edges=tuple(edges_of(places, content.ways, entities, seen, bounds)),
         grid=_with_things(content.grid, entities),
         T_map_source=T_map_source,
@@ -84,41 +86,42 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
     )
 
 
-def _robot_place(place: Place, segmentation: Segmentation) -> RobotPlace:
-    room = segmentation.room_at(place.x, place.y)
+def _robot_place(place: Place, lookup: RoomLookup) -> RobotPlace:
+    room = lookup.room_at(place.x, place.y)
     return RobotPlace(place.id, place.x, place.y, place.yaw, place.stamp, place.view_index, room)
 
 
-def _bound_in_room(bound: Bound, segmentation: Segmentation) -> Bound:
+def _bound_in_room(bound: Bound, lookup: RoomLookup) -> Bound:
     middle = (np.asarray(bound.start_xy) + bound.end_xy) / 2
-    return replace(bound, room=segmentation.room_at(*middle))
+    return replace(bound, room=lookup.room_at(*middle))
 
 
 def _doorways(segmentation: Segmentation) -> list[Doorway]:
     return [
-        Doorway(f"doorway-{i}", d.x, d.y, d.yaw, d.width, tuple(f"room-{n}" for n in d.labels))
+        Doorway(f"doorway-{i}", d.x, d.y, d.yaw, d.width, tuple(room_id(n) for n in d.labels))
         for i, d in enumerate(segmentation.doorways, start=1)
     ]
 
 
 def _rooms(
     segmentation: Segmentation,
+    lookup: RoomLookup,
     entities: Sequence[Entity],
     places: Sequence[RobotPlace],
     content: MapContent,
 ) -> list[Room]:
     """Rooms with the posterior that the affordances in them give (paper §II.F)."""
     visited = {p.room for p in places}
-    visited |= {segmentation.room_at(T[0, 3], T[1, 3]) for _, T in content.trajectory}
+    visited |= {lookup.room_at(T[0, 3], T[1, 3]) for _, T in content.trajectory}
     rooms = []
     for shape in segmentation.rooms:
-        id_ = f"room-{shape.label}"
+        id_ = room_id(shape.label)
         counts: Counter[str] = Counter()
         for entity in entities:
             if entity.room == id_ and entity.kind is NodeKind.OBSERVED:
                 counts.update(_evidence_of(entity, content.network))
         belief = content.network.room_posterior(counts)
-        x, y = shape.point_xy
+        x, y = shape.inside_xy
         rooms.append(Room(id_, x, y, shape.area, shape.polygon_xy, belief, id_ in visited))
     return rooms
 
