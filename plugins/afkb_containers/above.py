@@ -17,6 +17,10 @@ RASTER_M = 0.02
 HULL_MARGIN_CELLS = 1
 LARGE_SUPPORT_M2 = 0.12
 MAX_SUPPORTS = 62
+WALL_BIT = np.uint64(63)
+WALL_RMS_M = 0.05
+WALL_CELLS = 3
+MAX_SLOPE = 0.05
 
 
 @njit(cache=True)
@@ -69,6 +73,9 @@ class Supports:
         heights = np.array([float(d.position_xyz[2]) for d in chosen])
         areas = np.array([d.measures.get("area", 0.0) for d in chosen])
         raster, origin = _raster(chosen)
+        for d in earlier:
+            if d.segment_xy is not None and d.measures.get("rms", 0.0) < WALL_RMS_M:
+                _mark_wall(raster, origin, d.segment_xy)
         return cls(tuple(chosen), heights, areas >= LARGE_SUPPORT_M2, raster, origin)
 
 
@@ -95,36 +102,107 @@ def _raster(chosen: Sequence[Detection]) -> tuple[NDArray[np.uint64], NDArray[np
     return raster, origin
 
 
+def _mark_wall(
+    raster: NDArray[np.uint64], origin: NDArray[np.float64], segment_xy: NDArray[np.float64]
+) -> None:
+    """Set the wall bit where an upright plane stands, so that it isn't a thing on a support."""
+    mask = np.zeros(raster.shape, np.uint8)
+    ends = np.floor((segment_xy - origin) / RASTER_M).astype(int)[:, ::-1]
+    cv2.line(mask, tuple(ends[0].tolist()), tuple(ends[1].tolist()), 1, WALL_CELLS)
+    raster |= mask.astype(np.uint64) << WALL_BIT
+
+
+@njit(cache=True)
+def fit_supports(
+    depth_m: NDArray[np.float32],
+    points: NDArray[np.float32],
+    heights_m: NDArray[np.float64],
+    raster: NDArray[np.uint64],
+    origin_xy: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Plane of each support (K, 3): its height is a x + b y + c, x and y from the raster's corner.
+
+    Poses that are tilted by a degree lift the far end of a table by more than a magazine.
+    """
+    n = len(heights_m)
+    planes = np.zeros((n, 3))
+    planes[:, 2] = heights_m
+    for near in (0.020, 0.010):
+        moments = np.zeros((n, 3, 3))
+        right = np.zeros((n, 3))
+        for v in range(0, depth_m.shape[0], 2):
+            for u in range(0, depth_m.shape[1], 2):
+                if depth_m[v, u] <= 0:
+                    continue
+                x, y = points[v, u, 0] - origin_xy[0], points[v, u, 1] - origin_xy[1]
+                i, j = int(x / RASTER_M), int(y / RASTER_M)
+                if not (0 <= i < raster.shape[0] and 0 <= j < raster.shape[1]):
+                    continue
+                bits = raster[i, j]
+                for k in range(n):
+                    if (bits >> np.uint64(k)) & np.uint64(1) == 0:
+                        continue
+                    h = points[v, u, 2]
+                    if abs(h - (planes[k, 0] * x + planes[k, 1] * y + planes[k, 2])) < near:
+                        row = (x, y, 1.0)
+                        for r in range(3):
+                            right[k, r] += row[r] * h
+                            for c in range(3):
+                                moments[k, r, c] += row[r] * row[c]
+        for k in range(n):
+            if moments[k, 2, 2] > 30:
+                m = moments[k]
+                weight = m[2, 2]
+                # a slope that noise alone could give is held at level
+                m[0, 0] += 0.002 * weight
+                m[1, 1] += 0.002 * weight
+                mx, my = m[0, 2] / weight, m[1, 2] / weight
+                m[0, 0] -= weight * mx * mx
+                m[1, 1] -= weight * my * my
+                mxy = m[0, 1] - weight * mx * my
+                mh = right[k, 2] / weight
+                rx, ry = right[k, 0] - weight * mx * mh, right[k, 1] - weight * my * mh
+                det = m[0, 0] * m[1, 1] - mxy * mxy
+                a = (rx * m[1, 1] - ry * mxy) / det
+                b = (ry * m[0, 0] - rx * mxy) / det
+                if a * a + b * b < MAX_SLOPE * MAX_SLOPE:
+                    planes[k, 0], planes[k, 1], planes[k, 2] = a, b, mh - a * mx - b * my
+    return planes
+
+
 @njit(cache=True)
 def label_things(
     depth_m: NDArray[np.float32],
     points: NDArray[np.float32],
-    heights_m: NDArray[np.float64],
+    planes: NDArray[np.float64],
     large: NDArray[np.bool_],
     raster: NDArray[np.uint64],
     origin_xy: NDArray[np.float64],
     slope: NDArray[np.float64],
     low_m: float,
     high_m: float,
-) -> NDArray[np.int16]:
+) -> tuple[NDArray[np.int16], NDArray[np.float32]]:
     """Support, from 1, that each pixel's point stands on: (H, W); 0 none, -1 on a large support.
+
+    With it, how high the point is over that support, m: (H, W) float32.
 
     `slope` (3,): what one metre of depth changes in height is slope . (u, v, 1).
     """
     rows, cols = depth_m.shape
     out = np.zeros((rows, cols), np.int16)
-    n = len(heights_m)
+    overs = np.zeros((rows, cols), np.float32)
+    n = len(planes)
     for v in range(rows):
         for u in range(cols):
             z = depth_m[v, u]
             if z <= 0:
                 continue
-            i = int((points[v, u, 0] - origin_xy[0]) / RASTER_M)
-            j = int((points[v, u, 1] - origin_xy[1]) / RASTER_M)
+            x, y = points[v, u, 0] - origin_xy[0], points[v, u, 1] - origin_xy[1]
+            i, j = int(x / RASTER_M), int(y / RASTER_M)
             if not (0 <= i < raster.shape[0] and 0 <= j < raster.shape[1]):
                 continue
             bits = raster[i, j]
-            if bits == 0:
+            if bits == 0 or bits >> WALL_BIT != 0:
                 continue
             h = points[v, u, 2]
             rise = abs(slope[0] * u + slope[1] * v + slope[2])
@@ -132,13 +210,14 @@ def label_things(
             for k in range(n):
                 if (bits >> np.uint64(k)) & np.uint64(1) == 0:
                     continue
-                over = h - heights_m[k]
+                over = h - (planes[k, 0] * x + planes[k, 1] * y + planes[k, 2])
                 if over > high_m:
                     break
                 if over > margin:
                     out[v, u] = k + 1
+                    overs[v, u] = over
                     break
                 if over > -margin and large[k]:
                     out[v, u] = -1
                     break
-    return out
+    return out, overs

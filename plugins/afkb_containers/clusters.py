@@ -51,6 +51,7 @@ def clusters_from_above(
     flat: NDArray[np.int64],
     depth_m: NDArray[np.float32],
     points: NDArray[np.float32],
+    overs_m: NDArray[np.float32],
     support_height_m: float,
     core_m: float,
     cell_m: float,
@@ -60,10 +61,13 @@ def clusters_from_above(
 
     A mug's far inner wall is separated from its front by a step in depth, but not from above:
     its rim joins them. Only what rises by core_m joins, so that a magazine under a mug doesn't
-    make one thing of them; lower points go to the thing within whose hull they lie.
+    make one thing of them; lower points go to the thing within whose hull they lie. Heights are
+    those over the support (overs_m), so that a tilt of the view doesn't reach them.
     """
     xyz = points.reshape(-1, 3)[flat].astype(np.float64)
-    tall = xyz[:, 2] > support_height_m + core_m
+    over = overs_m.ravel()[flat]
+    tall = over > core_m
+    xyz[:, 2] = support_height_m + over
     if tall.sum() < min_pixels // 2:
         return
     ij = np.floor(xyz[:, :2] / cell_m).astype(np.int64)
@@ -110,16 +114,14 @@ def surroundings(
     u: NDArray[np.int64],
     v: NDArray[np.int64],
     depth_m: NDArray[np.float32],
-    points: NDArray[np.float32],
     mine: NDArray[np.int32],
     name: int,
-    support_height_m: float,
-    margin_m: float,
+    labels: NDArray[np.int16],
 ) -> tuple[float, float, float, float]:
     """What a thing's outline borders on: shares of attached, behind it, before it, missing.
 
-    Attached: the surface goes on, above the support, so that this is a part of something larger.
-    `mine` (H, W) holds `name` at the thing's pixels.
+    Attached: the surface goes on, off the support, so that this is a part of something larger.
+    `mine` (H, W) holds `name` at the thing's pixels; `labels` (H, W) is negative on supports.
     """
     rows, cols = depth_m.shape
     attached = behind = before = missing = total = 0
@@ -148,7 +150,7 @@ def surroundings(
                 behind += 1
             elif other < z - jump:
                 before += 1
-            elif points[i, j, 2] > support_height_m + margin_m:
+            elif labels[i, j] >= 0:
                 attached += 1
             else:
                 behind += 1

@@ -25,6 +25,7 @@ MIN_PENETRATION_M = 0.02
 class Opening:
     """An opening upwards: rim height above the floor and depth seen below it (m), evidence.
 
+    `sight_share`: depth seen, as a share of what sight lines through that rim could show.
     `rim_share`: how much of the way around the rim is seen; `n_inside`: pixels seen inside.
     """
 
@@ -32,6 +33,7 @@ class Opening:
     depth_m: float
     rim_share: float
     inside_share: float
+    sight_share: float
     n_inside: int
 
 
@@ -68,7 +70,17 @@ def find_opening(
     through = _inside(hull, crossing, 0.0)
     depth = float(np.percentile(rim - heights[inside], 90))
     share = _share_around(cluster.points[on_rim, :2], crossing[inside])
-    return Opening(rim, depth, share, len(inside) / max(int(through.sum()), 1), len(inside))
+    along = ray[inside[0], :2] / np.linalg.norm(ray[inside[0], :2])
+    across = hull.reshape(-1, 2) @ along
+    sight = float((across.max() - across.min()) * np.median(_steepness(ray[inside])))
+    shown = len(inside) / max(int(through.sum()), 1)
+    return Opening(rim, depth, share, shown, depth / max(sight, 1e-3), len(inside))
+
+
+def _steepness(ray: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Fall of sight lines (N, 3) per metre of ground covered."""
+    fall: NDArray[np.float64] = -ray[:, 2] / np.hypot(ray[:, 0], ray[:, 1])
+    return fall
 
 
 def rim_height(heights_m: NDArray[np.float64]) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
-from afkb_containers.above import Supports, label_things, map_points
+from afkb_containers.above import Supports, fit_supports, label_things, map_points
 from afkb_containers.clusters import Cluster, clusters_from_above, surroundings
 from afkb_containers.concavity import Opening, find_opening
 from afkb_containers.settings import ContainerSettings
@@ -19,6 +19,10 @@ from afkb_surfaces.settings import membership
 ATTACHED = 0.25
 """A thing with more of its outline than this going on beyond it is part of something larger."""
 LEAST_CLAIM = 0.1
+CUT = 0.5
+"""A body that the image edge cuts shows neither its top nor its thickness."""
+SIGHT_SHARE = 0.6
+"""Share of what a sight line could show of an opening, from which it is taken for deep."""
 
 
 class ContainerDetector:
@@ -39,15 +43,18 @@ class ContainerDetector:
         intrinsics = np.array([camera.fx, camera.fy, camera.cx, camera.cy])
         points = map_points(view.depth_m, intrinsics, T)
         supports = Supports.of(earlier)
-        labels = label_things(
-            view.depth_m, points, supports.heights_m, supports.large, supports.raster,
+        planes = fit_supports(
+            view.depth_m, points, supports.heights_m, supports.raster, supports.origin_xy
+        )
+        labels, overs = label_things(
+            view.depth_m, points, planes, supports.large, supports.raster,
             supports.origin_xy, height_per_depth(intrinsics, T), *s.above_m,
         )
         found = []
         mine = np.zeros(view.depth_m.shape, np.int32)
-        things = self._things(view.depth_m, points, labels, supports)
+        things = self._things(view.depth_m, points, labels, overs, supports)
         for name, cluster in enumerate(things, start=1):
-            detection = self._judge(cluster, view.depth_m, points, mine, name, T[:3, 3])
+            detection = self._judge(cluster, view.depth_m, labels, mine, name, T[:3, 3])
             if detection is not None:
                 found.append(detection)
         return found
@@ -57,6 +64,7 @@ class ContainerDetector:
         depth_m: NDArray[np.float32],
         points: NDArray[np.float32],
         labels: NDArray[np.int16],
+        overs: NDArray[np.float32],
         supports: Supports,
     ) -> Iterator[Cluster]:
         flat = np.flatnonzero(labels.ravel() > 0)
@@ -67,7 +75,7 @@ class ContainerDetector:
         for k, (begin, end) in enumerate(zip(starts[:-1], starts[1:], strict=True)):
             if end - begin >= self.settings.min_pixels:
                 yield from clusters_from_above(
-                    flat[begin:end], depth_m, points, float(supports.heights_m[k]),
+                    flat[begin:end], depth_m, points, overs, float(supports.heights_m[k]),
                     self.settings.core_m, self.settings.cell_m, self.settings.min_pixels,
                 )
 
@@ -75,7 +83,7 @@ class ContainerDetector:
         self,
         cluster: Cluster,
         depth_m: NDArray[np.float32],
-        points: NDArray[np.float32],
+        labels: NDArray[np.int16],
         mine: NDArray[np.int32],
         name: int,
         camera_xyz: NDArray[np.float64],
@@ -87,14 +95,18 @@ class ContainerDetector:
             return None
         mine[cluster.v, cluster.u] = name
         attached, *_ = surroundings(
-            cluster.u, cluster.v, depth_m, points, mine, name, base, self.settings.above_m[0]
+            cluster.u, cluster.v, depth_m, mine, name, labels
         )
         if attached > ATTACHED:
             return None
-        opening = find_opening(cluster, camera_xyz)
         solid = solid_of(cluster, base, self.settings)
-        open_p = self._open_probability(opening) * size
+        if solid.height_m > self.settings.above_m[1] - 0.02:
+            return None
+        opening = find_opening(cluster, camera_xyz)
+        open_p = self._open_probability(opening) * size * solid.whole
         closed_p = 0.75 * solid.degree * size * (1 - open_p)
+        if cluster.cut_by_image:
+            closed_p *= CUT
         if max(open_p, closed_p) < LEAST_CLAIM:
             return None
         return self._detection(cluster, base, opening, solid, open_p, closed_p, attached)
@@ -103,8 +115,10 @@ class ContainerDetector:
         if opening is None or opening.rim_share < 0.5:
             return 0.0
         deep = membership(opening.depth_m, self.settings.depth_m)
+        if opening.sight_share >= SIGHT_SHARE:
+            deep = max(deep, 0.9)
         around = min(1.0, (opening.rim_share - 0.5) / 0.3)
-        seen = min(1.0, opening.inside_share / 0.5)
+        seen = min(1.0, opening.inside_share / 0.15)
         return 0.95 * deep * (0.3 + 0.7 * around) * (0.3 + 0.7 * seen)
 
     def _detection(
@@ -131,6 +145,7 @@ class ContainerDetector:
             measures |= {
                 "depth": opening.depth_m,
                 "rim_share": opening.rim_share,
+                "sight_share": opening.sight_share,
                 "inside_share": opening.inside_share,
                 "n_inside": float(opening.n_inside),
             }

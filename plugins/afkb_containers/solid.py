@@ -13,17 +13,20 @@ from afkb_surfaces.settings import membership
 
 SOLIDITY = (0.75, 0.90)
 """Share of its image's convex hull that a body must fill: not at all below, fully above."""
+WHOLE = (0.50, 0.70)
+"""The same for a hollow body, whose handle or spout stands off: plants and rails fall below."""
 SLENDER = 5.0
 
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """How much a thing is a closed body, 0 to 1, and the measures that say so (m)."""
+    """How much a thing is a closed body (`degree`) or one body (`whole`), 0 to 1; measures in m."""
 
     degree: float
     height_m: float
     thickness_m: float
     solidity: float
+    whole: float
 
 
 def solid_of(cluster: Cluster, base_m: float, settings: ContainerSettings) -> Solid:
@@ -35,11 +38,15 @@ def solid_of(cluster: Cluster, base_m: float, settings: ContainerSettings) -> So
     degree = (
         membership(height, settings.solid_height_m)
         * membership(width - cluster.sigma_m, settings.solid_thickness_m)
-        * min(max((fill - SOLIDITY[0]) / (SOLIDITY[1] - SOLIDITY[0]), 0.0), 1.0)
+        * _ramp(fill, SOLIDITY)
     )
     if max(height, length) > SLENDER * max(width, 1e-3):
         degree = 0.0
-    return Solid(degree, height, width, fill)
+    return Solid(degree, height, width, fill, _ramp(fill, WHOLE))
+
+
+def _ramp(value: float, limits: tuple[float, float]) -> float:
+    return min(max((value - limits[0]) / (limits[1] - limits[0]), 0.0), 1.0)
 
 
 def sides_from_above(cluster: Cluster) -> tuple[float, float]:

@@ -25,6 +25,8 @@ from afkb_surfaces.upright import upright_detection
 
 FLOOR_LABEL = 1
 MIN_PIXELS = 80
+BELOW_CAMERA_M = 0.01
+"""An upper surface is seen from above only; what seems to be one higher up is noise."""
 UPRIGHT_WITHIN_RAD = math.radians(12)
 
 
@@ -80,6 +82,8 @@ class SurfaceDetector:
                 yield from self._floor(patch, len(flat))
                 continue
             height = mode_height(patch.points[:, 2])
+            if height > T[2, 3] - BELOW_CAMERA_M:
+                continue
             footprint = filled_footprint(
                 patch, pixels, label, height, intrinsics, T, self.settings.footprint_step_m
             )

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from afkb_surfaces.cells import CELL, COUNT, DEPTH, NX, NZ, SIGMA_TILT, A, B, C, X, Z
 from afkb_surfaces.noise import depth_sigma
 
+SAME_WALL_COS = 0.92
+"""A wall's normal stays this close to where it was first seen, so that corners part walls."""
 NONE, FLOOR, SUPPORT, UPRIGHT = 0, 1, 2, 3
 
 
@@ -46,9 +48,13 @@ def _one_surface(
         forth += d * p[NX + k]
         back += d * q[NX + k]
     if kind == UPRIGHT:
-        dot = p[NX] * q[NX] + p[NX + 1] * q[NX + 1] + p[NZ] * q[NZ]
-        return dot > 0.9 and min(abs(forth), abs(back)) < tolerance
+        return min(abs(forth), abs(back)) < tolerance
     return min(abs(q[Z] - p[Z]), max(abs(forth), abs(back))) < tolerance
+
+
+@njit(cache=True, inline="always")
+def _dot(p: NDArray[np.float64], q: NDArray[np.float64]) -> float:
+    return p[NX] * q[NX] + p[NX + 1] * q[NX + 1] + p[NZ] * q[NZ]
 
 
 @njit(cache=True)
@@ -72,6 +78,7 @@ def grow(
                 continue
             count += 1
             labels[r0, c0] = count
+            seed = cells[r0, c0]
             stack[0, 0], stack[0, 1] = r0, c0
             top = 1
             while top > 0:
@@ -82,6 +89,8 @@ def grow(
                     if not (0 <= i < rows and 0 <= j < cols):
                         continue
                     if labels[i, j] != 0 or kinds[i, j] != kind:
+                        continue
+                    if kind == UPRIGHT and _dot(seed, cells[i, j]) < SAME_WALL_COS:
                         continue
                     if _one_surface(cells[r, c], cells[i, j], kind, step_m):
                         labels[i, j] = count
