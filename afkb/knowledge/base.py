@@ -107,3 +107,9 @@ class KnowledgeBase:
         if found is None:
             raise KnowledgeError(f"no term named {name!r} in {', '.join(map(str, self.files))}")
         return found
+
+    def statements_about(self, name: str) -> dict[str, list[str]]:
+        """Everything stated of a term, by property: IRIs and literals as text, sorted."""
+        subject = self.iri(name)
+        stated = self._content.facts.values.get(subject, {})
+        return {prop: sorted(values) for prop, values in sorted(stated.items())}

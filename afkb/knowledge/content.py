@@ -24,7 +24,7 @@ from afkb.knowledge.names import fragment
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """The typed items by name, the numbers for the network, and the IRI of every name."""
+    """The typed items by name, the numbers for the network, the IRI of every name, and the raw facts."""
 
     features: Mapping[str, Feature]
     scales: Mapping[str, Scale]
@@ -35,6 +35,7 @@ class Content:
     rooms: Mapping[str, RoomCategory]
     parameters: Mapping[str, float]
     iris: Mapping[str, str]
+    facts: Facts
 
 
 def read_content(files: Sequence[Path]) -> Content:
@@ -58,6 +59,7 @@ def read_content(files: Sequence[Path]) -> Content:
             }
         ),
         iris=MappingProxyType(_all_names(facts)),
+        facts=facts,
     )
     check_references(content, facts)
     return content

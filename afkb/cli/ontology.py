@@ -1,0 +1,137 @@
+"""`afkb ontology`: builds the ontology from its tables, checks extensions, shows its terms."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from afkb.cli.output import print_json, print_table, print_text, tell
+from afkb.cli.state import state_of
+from afkb.errors import KnowledgeError
+
+if TYPE_CHECKING:
+    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge.model import Statement
+
+app = typer.Typer(no_args_is_help=True, help="Build, check and show the ontology.")
+
+_Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
+
+
+@app.command()
+def build(
+    tables: Annotated[
+        Path | None,
+        typer.Option(help="Folder of tables.  [default: beside the bundled ontology]"),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="File to write.  [default: the bundled ontology]")
+    ] = None,
+) -> None:
+    """Build the RDF/XML ontology from its tables; the same tables give the same bytes.
+
+    Example: afkb ontology build --tables ontology/tables --out ontology/afnet.owl
+    """
+    from afkb.knowledge import bundled_ontology
+    from afkb.knowledge.build import write_ontology
+
+    tables = tables or bundled_ontology().parent / "tables"
+    out = out or bundled_ontology()
+    try:
+        count = write_ontology(tables, out)
+    except OSError as error:
+        raise KnowledgeError(f"{out}: can't be written: {error.strerror}; choose --out") from error
+    tell(f"{out}: {count} statements")
+
+
+@app.command()
+def check(
+    ctx: typer.Context,
+    extensions: Annotated[
+        list[Path] | None, typer.Argument(metavar="[FILE]...", help="Extensions to check, too.")
+    ] = None,
+    as_json: _Json = False,
+) -> None:
+    """Read the ontology, plugins' extensions and yours, and count what they state, by status.
+
+    Fails, naming the file, where one can't be read, refers to a term that nothing has, or states
+    a number out of range.
+
+    Example: afkb ontology check my-home.owl
+    """
+    from afkb.inference import Network
+    from afkb.knowledge.names import STATUSES
+
+    base = state_of(ctx).host.knowledge_base.extended(extensions or [])
+    Network.compile(base)
+    counts = {
+        what: Counter(item.status for item in items) for what, items in _items(base).items()
+    }
+    if as_json:
+        print_json({what: dict(sorted(by_status.items())) for what, by_status in counts.items()})
+        return
+    print_table(
+        ["", "all", *STATUSES],
+        [(what, c.total(), *(c[status] for status in STATUSES)) for what, c in counts.items()],
+        numbers=["all", *STATUSES],
+    )
+
+
+@app.command()
+def show(
+    ctx: typer.Context,
+    name: Annotated[str | None, typer.Argument(help="A term, as in `Mug`.")] = None,
+    as_json: _Json = False,
+) -> None:
+    """Show one term with all that is stated of it, or the names of all.
+
+    Example: afkb ontology show Mug
+    """
+    base = state_of(ctx).host.knowledge_base
+    if name is None:
+        names = {what: [item.name for item in items] for what, items in _items(base).items()}
+        if as_json:
+            print_json(names)
+        else:
+            print_table(["", "names"], [(what, ", ".join(n)) for what, n in names.items()])
+        return
+    statements = base.statements_about(name)
+    if as_json:
+        print_json(statements)
+    else:
+        rows = [(prop, value) for prop, values in statements.items() for value in values]
+        print_table(["property", "value"], rows, title=base.iri(name))
+
+
+@app.command()
+def network(
+    ctx: typer.Context,
+    out: Annotated[Path, typer.Option(help="BIF file to write.")],
+) -> None:
+    """Write the Bayesian network that is compiled from the ontology, as BIF.
+
+    Example: afkb ontology network --out afnet.bif
+    """
+    from afkb.inference import Network
+
+    compiled = Network.compile(state_of(ctx).host.knowledge_base)
+    try:
+        compiled.write_bif(out)
+    except OSError as error:
+        raise KnowledgeError(f"{out}: can't be written: {error.strerror}; choose --out") from error
+    print_text(str(out))
+
+
+def _items(base: KnowledgeBase) -> dict[str, list[Statement]]:
+    return {
+        "features": list(base.features.values()),
+        "scales": list(base.scales.values()),
+        "categories": list(base.categories.values()),
+        "duals": list(base.duals),
+        "co-occurrences": list(base.co_occurrences),
+        "evidence classes": list(base.evidence_classes.values()),
+        "rooms": list(base.rooms.values()),
+    }
