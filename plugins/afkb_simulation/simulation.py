@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +35,8 @@ class Simulation:
         self._check_way(path)
         rng = np.random.default_rng([world.seed, _ODOMETRY_STREAM])
         self._T_odom_base = drifting(self.T_world_base, world.odometry_drift, rng)
+        # labels, heights and depth of one frame share its rays
+        self.camera_hits = lru_cache(maxsize=1)(self._camera_hits)
         self._casters: dict[tuple[int, ...], Caster] = {}
 
     @cached_property
@@ -62,7 +64,7 @@ class Simulation:
             T_base_laser=_T_base_laser(laser) if laser else None,
         )
 
-    def camera_hits(self, index: int) -> Hits:
+    def _camera_hits(self, index: int) -> Hits:
         """(H, W) exact depth and which mesh each pixel shows: 0 the building, then the things."""
         if self.camera is None or self.T_base_camera is None:
             raise SourceError(f"world {self.world.name!r}: its robot has no camera; give it one")
