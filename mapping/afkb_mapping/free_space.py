@@ -1,0 +1,82 @@
+"""Free space of an occupancy grid as rooms see it: without furniture, ragged edges and spokes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from afkb.flow import OccupancyGrid
+
+Mask = NDArray[np.bool_]
+
+FREE_BELOW = 0.45
+"""Probability below which a cell is free: one beam through it suffices."""
+OCCUPIED_ABOVE = 0.55
+"""Probability above which a cell is occupied."""
+GAP_M = 0.2
+"""Unknown gaps up to this width inside free space are spaces between beams or depth pixels."""
+SPOKE_M = 0.25
+"""Free space narrower than this is a beam through a window or a gap, nowhere to stand."""
+FURNITURE_M = 2.4
+"""An island in the free space no longer than this is furniture (a bed, a sofa, a cabinet),"""
+PARTITION_M = (1.0, 0.35)
+"""unless it is at least this long and at most this thick: a piece of wall."""
+
+
+def free_space(grid: OccupancyGrid) -> Mask:
+    """(rows, cols) cells of rooms: free ones, and those under furniture that stands free."""
+    resolution = grid.resolution_m
+    with np.errstate(invalid="ignore"):
+        free = grid.probability < FREE_BELOW
+        occupied = grid.probability > OCCUPIED_ABOVE
+    free = _closed(free, GAP_M, resolution) & ~occupied
+    free = without_furniture(free, resolution)
+    return _opened(free, SPOKE_M, resolution)
+
+
+def without_furniture(free: Mask, resolution: float) -> Mask:
+    """Free space with small islands filled, pieces of wall kept."""
+    outside = np.pad(~free, 1, constant_values=True)
+    islands, _ = ndimage.label(outside, structure=np.ones((3, 3)))
+    islands[islands == islands[0, 0]] = 0
+    islands = islands[1:-1, 1:-1]
+    filled = free.copy()
+    for label, window in enumerate(ndimage.find_objects(islands), start=1):
+        if window is None:
+            continue
+        island = islands[window] == label
+        if _is_furniture(island, resolution):
+            filled[window] |= island
+    return filled
+
+
+def _is_furniture(island: Mask, resolution: float) -> bool:
+    """Whether an island is short, and not as thin as a wall, straight or bent."""
+    length = float(np.hypot(*island.shape)) * resolution
+    thickness = 2 * float(_distance(np.pad(island, 1), resolution).max())
+    is_wall = length >= PARTITION_M[0] and thickness <= PARTITION_M[1]
+    return length <= FURNITURE_M and not is_wall
+
+
+def _closed(mask: Mask, width_m: float, resolution: float) -> Mask:
+    """Gaps up to this width filled."""
+    radius = width_m / 2
+    padded = np.pad(mask, int(np.ceil(radius / resolution)) + 1)
+    grown = _distance(~padded, resolution) <= radius
+    closed = _distance(grown, resolution) > radius
+    cut = int(np.ceil(radius / resolution)) + 1
+    return closed[cut:-cut, cut:-cut] | mask
+
+
+def _opened(mask: Mask, width_m: float, resolution: float) -> Mask:
+    """Parts narrower than this removed."""
+    padded = np.pad(mask, 1)
+    core = _distance(padded, resolution) > width_m / 2
+    return (_distance(~core, resolution) <= width_m / 2)[1:-1, 1:-1] & mask
+
+
+def _distance(mask: Mask, resolution: float) -> NDArray[np.float64]:
+    """Distance of each cell of the mask to the nearest cell outside it, m."""
+    distance: NDArray[np.float64] = ndimage.distance_transform_edt(mask) * resolution
+    return distance

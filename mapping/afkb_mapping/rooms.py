@@ -1,0 +1,121 @@
+"""Rooms of an occupancy grid: basins of free space that narrow passages part (Bormann 2016, §III).
+
+The distance to the nearest obstacle is flooded from its peaks downwards. Where two basins meet, the
+passage is twice as wide as the field is high there; if it is as narrow as a doorway, and narrower
+than both sides, they are two rooms. For furnished homes, merging beats splitting.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from afkb.flow import OccupancyGrid
+from afkb_mapping.doorways import DoorwayShape, find_doorways
+from afkb_mapping.free_space import Mask, free_space
+
+Labels = NDArray[np.int32]
+
+WIDEST_DOOR_M = 2.4
+"""A wider passage joins: openings without a door, as between kitchen and dining room, reach this."""
+NARROWING = 0.75
+"""A passage wider than this part of the narrower side is no narrowing: it joins."""
+LEAST_ROOM_M2 = 2.5
+"""Less than this is a niche or a closet, and belongs to the room it opens to."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RoomShape:
+    """One room: its label in the grid, area (m²), outline (N, 2) and a point inside, map frame."""
+
+    label: int
+    area: float
+    polygon_xy: NDArray[np.float64]
+    inside_xy: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segmentation:
+    """Rooms and doorways of a grid; `labels` (rows, cols) int32 as the grid, 0 = no room."""
+
+    labels: Labels
+    rooms: tuple[RoomShape, ...]
+    doorways: tuple[DoorwayShape, ...]
+
+
+def segment_rooms(grid: OccupancyGrid) -> Segmentation:
+    """The rooms of the grid, largest first, with the doorways between them."""
+    free = free_space(grid)
+    clearance = _clearance(free, grid.resolution_m)
+    labels = _basins(free, clearance)
+    labels = _absorb_niches(labels, clearance, LEAST_ROOM_M2 / grid.resolution_m**2)
+    labels = _numbered(labels)
+    rooms = tuple(_shape(labels, label, clearance, grid) for label in range(1, labels.max() + 1))
+    return Segmentation(labels, rooms, find_doorways(labels, clearance, grid))
+
+
+def _clearance(free: Mask, resolution: float) -> NDArray[np.float32]:
+    """Distance to the nearest obstacle, m; the edge of the grid is one."""
+    distance = ndimage.distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1] * resolution
+    # To the obstacle's border, not its middle.
+    return np.asarray(np.maximum(distance - resolution / 2, 0), dtype=np.float32)
+
+
+def _basins(free: Mask, clearance: NDArray[np.float32]) -> Labels:
+    from afkb_mapping.flood_kernel import flood
+
+    flat = np.flatnonzero(free)
+    order = flat[np.argsort(-clearance.ravel()[flat], kind="stable")]
+    labels: Labels = flood(clearance, order.astype(np.int64), WIDEST_DOOR_M / 2, NARROWING)
+    return labels
+
+
+def _absorb_niches(labels: Labels, clearance: NDArray[np.float32], least_cells: float) -> Labels:
+    """Small basins given to the neighbour with the widest passage; without one, dropped."""
+    labels = labels.copy()
+    while True:
+        sizes = np.bincount(labels.ravel())
+        sizes[0] = 0
+        small = np.flatnonzero((sizes > 0) & (sizes < least_cells))
+        if not len(small):
+            return labels
+        label = int(small[np.argmin(sizes[small])])
+        labels[labels == label] = _widest_neighbour(labels, label, clearance)
+
+
+def _widest_neighbour(labels: Labels, label: int, clearance: NDArray[np.float32]) -> int:
+    rows, cols = np.nonzero(labels == label)
+    window = np.s_[max(rows.min() - 1, 0) : rows.max() + 2, max(cols.min() - 1, 0) : cols.max() + 2]
+    part, width = labels[window], clearance[window]
+    rim = ndimage.binary_dilation(part == label, np.ones((3, 3))) & (part != label) & (part > 0)
+    return int(part[rim][np.argmax(width[rim])]) if rim.any() else 0
+
+
+def _numbered(labels: Labels) -> Labels:
+    """Labels 1 … n, largest room first."""
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    order = np.argsort(-sizes, kind="stable")[: np.count_nonzero(sizes)]
+    renumbered = np.zeros(len(sizes), dtype=np.int32)
+    renumbered[order] = np.arange(1, len(order) + 1)
+    return renumbered[labels]
+
+
+def _shape(
+    labels: Labels, label: int, clearance: NDArray[np.float32], grid: OccupancyGrid
+) -> RoomShape:
+    import cv2
+
+    mask = labels == label
+    contours, _ = cv2.findContours(
+        mask.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE
+    )
+    outline = cv2.approxPolyDP(max(contours, key=cv2.contourArea), 1.0, True)
+    cells = outline.reshape(-1, 2).astype(np.float64)
+    polygon = (cells + 0.5) * grid.resolution_m + np.array(grid.origin_xy)
+    row, col = np.unravel_index(np.argmax(np.where(mask, clearance, -1.0)), mask.shape)
+    x, y = (np.array([col, row]) + 0.5) * grid.resolution_m + np.array(grid.origin_xy)
+    return RoomShape(label, float(mask.sum() * grid.resolution_m**2), polygon, (float(x), float(y)))
