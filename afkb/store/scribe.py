@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pyoxigraph import Literal, NamedNode, Triple
 
 from afkb.errors import AfkbError
-from afkb.store.vocabulary import AFN, escaped, term
+from afkb.store.vocabulary import AFN, OTHER_NAMES, escaped, term
 
 Value = NamedNode | Literal | str | float | int | bool
 
@@ -45,13 +45,13 @@ class Scribe:
         return NamedNode(self.base + escaped(local))
 
     def individual(self, name: str) -> NamedNode:
-        """The ontology's IRI for a name; for a name it lacks, one of this scene, described."""
+        """The ontology's IRI for a name; for a name it lacks, another, described here."""
         if name in _ELSEWHERE:
             return NamedNode(AFN + name)
         try:
             return NamedNode(self._names.iri(name))
         except (KeyError, AfkbError):
-            unknown = self.node(f"name-{name}")
+            unknown = NamedNode(OTHER_NAMES + escaped(name))
             self.say(unknown, "rdfs:label", name)
             self.say(unknown, "rdfs:comment", "used by a plugin; no ontology in use describes it")
             return unknown

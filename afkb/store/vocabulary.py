@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from urllib.parse import quote
+from urllib.parse import quote, unquote
 
 from pyoxigraph import NamedNode
 
 AFN = "https://w3id.org/afkb/afnet#"
 SCENES = "https://w3id.org/afkb/scene/"
+# For names that a plugin uses and no ontology in use has; the same in every map.
+OTHER_NAMES = "https://w3id.org/afkb/name#"
 
 PREFIXES: dict[str, str] = {
     "afn": AFN,
@@ -44,7 +46,7 @@ def local_name(iri: str) -> str:
     >>> local_name("https://w3id.org/afkb/afnet#Mug")
     'Mug'
     """
-    return iri.rsplit("#", 1)[-1] if "#" in iri else iri.rsplit("/", 1)[-1]
+    return unquote(iri.rsplit("#" if "#" in iri else "/", 1)[-1])
 
 
 def escaped(name: str) -> str:

@@ -22,7 +22,7 @@ _POSE_XY = (4, 8)
 def plan(topological_map: TopologicalMap) -> str:
     """The plan as one `<svg>`, a group per layer, tooltips on everything."""
     west, south, east, north = _extent(topological_map)
-    radius = max(0.07, 0.007 * max(east - west, north - south))
+    radius = 0.008 * max(east - west, north - south, 5.0)
     layers = {
         "grid": _grid(topological_map),
         "rooms": _rooms(topological_map),
@@ -33,7 +33,7 @@ def plan(topological_map: TopologicalMap) -> str:
         "labels": _labels(topological_map, radius),
     }
     view = f"{d.number(west)} {d.number(-north)} {d.number(east - west)} {d.number(north - south)}"
-    size = f"--label:{d.number(max(0.16, 1.6 * radius))}px"
+    size = f"--label:{d.number(1.6 * radius)}px"
     groups = "\n".join(d.group(name, layers[name]) for name in LAYERS)
     scale = _scale_bar(west, south)
     return (
@@ -176,9 +176,9 @@ def _labels(m: TopologicalMap, radius: float) -> Iterator[str]:
         yield d.text("room-label", room.x, room.y, f"{name} {p:.2f}")
     for entity in m.entities:
         x, y, _ = entity.position_xyz
-        yield d.text("label", x, y + 1.5 * radius, entity.id)
+        yield d.text("label", x, y + 1.3 * radius, entity.id)
     for place in m.places:
-        yield d.text("label", place.x, place.y + 1.5 * radius, place.id)
+        yield d.text("label", place.x, place.y + 1.3 * radius, place.id)
 
 
 def _scale_bar(west: float, south: float) -> str:

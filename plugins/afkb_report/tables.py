@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
 from afkb.flow import Entity, NodeKind, TopologicalMap
-from afkb_report.words import best, role
+from afkb_report.words import affords, best, role
 
 _KINDS = {
     NodeKind.OBSERVED: "seen",
@@ -75,7 +75,7 @@ def _row(entity: Entity) -> tuple[str, ...]:
     return (
         mark + escape(entity.id),
         escape(_KINDS[entity.kind] + moves),
-        escape(", ".join(name for name, p in best(entity.affordances, 3) if p >= 0.5)),
+        escape(", ".join(affords(entity)[:3])),
         escape(", ".join(f"{name} {p:.2f}" for name, p in best(entity.category_belief, 2))),
         f"{entity.existence:.2f}",
         f"{x:.2f}",

@@ -1,0 +1,157 @@
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from afkb.errors import KnowledgeError, QueryError
+from afkb.store import StoredMap, load, query, write_map
+from afkb.store.named import named_queries, named_query
+from afkb.store.sparql_text import refuse_writing
+from store_samples import Names, sample_map
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory) -> StoredMap:
+    folder = tmp_path_factory.mktemp("maps") / "home"
+    return load(write_map(folder, sample_map(), {}, [], Names()))
+
+
+def ask(stored: StoredMap, sparql: str) -> list[tuple[str, ...]]:
+    return query([stored], sparql).cells()
+
+
+def test_containers_come_with_their_support(stored: StoredMap) -> None:
+    rows = ask(stored, "SELECT ?c ?s { ?c afn:affords afn:ContainAbility ; afn:supportedBy ?s }")
+    assert rows == [("scene:n2", "scene:n1")]
+
+
+def test_ask_construct_and_describe(stored: StoredMap) -> None:
+    assert query([stored], "ASK { ?r a afn:Room }").truth is True
+    built = query([stored], "CONSTRUCT { ?n a skos:Concept } WHERE { ?n a afn:RobotPlace }")
+    assert built.triples is not None and len(built.triples) == 2
+    assert "scene:n1" in query([stored], "DESCRIBE scene:n1").text("ttl")
+
+
+def test_json_is_sparql_results_json(stored: StoredMap) -> None:
+    import rdflib.plugins.sparql.results.jsonresults as standard
+
+    text = query([stored], "SELECT ?n ?x ?nothing { ?n a afn:Room ; afn:x ?x }").text("json")
+    parsed = standard.JSONResult(json.loads(text))
+    assert [str(v) for v in parsed.vars] == ["n", "x", "nothing"]
+    assert sorted(float(b[parsed.vars[1]]) for b in parsed.bindings) == [1.0, 4.0]
+    assert json.loads(query([stored], "ASK { ?x a afn:Yeti }").text("json"))["boolean"] is False
+
+
+def test_csv_has_a_header_and_plain_values(stored: StoredMap) -> None:
+    text = query([stored], "SELECT ?label { ?x rdfs:label ?label } ORDER BY ?label").text("csv")
+    rows = list(csv.reader(io.StringIO(text)))
+    assert rows[0] == ["label"]
+    assert ["containers"] in rows
+
+
+def test_several_maps_are_asked_together_and_told_apart(tmp_path: Path) -> None:
+    import dataclasses
+
+    whole = sample_map()
+    other = dataclasses.replace(whole, entities=whole.entities[:1], closures=(), edges=())
+    maps = [
+        load(write_map(tmp_path / "a" / "m", whole, {}, [], Names())),
+        load(write_map(tmp_path / "b" / "m", other, {}, [], Names())),
+    ]
+    counted = query(maps, "SELECT (COUNT(?n) AS ?c) { ?n a afn:ObservedEntity }").cells()
+    assert counted == [("4",)]
+    by_map = "SELECT ?g (COUNT(?n) AS ?c) { GRAPH ?g { ?n a afn:ObservedEntity } } GROUP BY ?g"
+    assert sorted(query(maps, by_map).cells()) == [
+        ("urn:afkb:map:m", "3"),
+        ("urn:afkb:map:m-2", "1"),
+    ]
+
+
+def test_the_ontology_is_asked_along(stored: StoredMap, tmp_path: Path) -> None:
+    extra = tmp_path / "extra.ttl"
+    extra.write_text(
+        "@prefix afn: <https://w3id.org/afkb/afnet#> .\n"
+        "@prefix skos: <http://www.w3.org/2004/02/skos/core#> .\n"
+        "afn:Mug skos:broader afn:Container ."
+    )
+    sparql = "SELECT ?n { ?n afn:categoryBelief/afn:category/skos:broader afn:Container }"
+    assert query([stored], sparql, [extra]).cells() == [("scene:n2",)]
+    extra.write_text("not turtle")
+    with pytest.raises(KnowledgeError, match="not readable"):
+        query([stored], sparql, [extra])
+
+
+@pytest.mark.parametrize(
+    ("sparql", "where"),
+    [
+        ("SELECT ?s WHER { ?s ?p ?o }", "line 1, column 11, near 'WHER"),
+        ("SELECT *\nWHERE {\n  ?s ?p ?o .\n  FLTER(?o > 3)\n}", "line 4, column 3, near 'FLTER"),
+        ("SELECT ?s WHERE { ?s ?p ?o", "line 1, column 27, at the end"),
+        ("SELECT * {\n ?s foo:bar 1 }", "line 2, column 5: the prefix 'foo:'"),
+        ("", "line 1, column 1"),
+    ],
+)
+def test_a_syntax_error_has_its_position(stored: StoredMap, sparql: str, where: str) -> None:
+    with pytest.raises(QueryError) as told:
+        query([stored], sparql)
+    assert where in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    "sparql",
+    [
+        "INSERT DATA { <urn:a> <urn:b> 1 }",
+        "# tidy up\nPREFIX x: <urn:insert#>\nDELETE WHERE { ?s ?p ?o }",
+        "LOAD <http://example.org/x>",
+        "WITH <urn:g> DELETE { ?s ?p ?o } WHERE { ?s ?p ?o }",
+        "clear all",
+    ],
+)
+def test_updates_are_refused(stored: StoredMap, sparql: str) -> None:
+    with pytest.raises(QueryError, match="read-only"):
+        query([stored], sparql)
+
+
+def test_service_is_refused_but_the_word_may_be_used(stored: StoredMap) -> None:
+    with pytest.raises(QueryError, match="line 2, column 3: SERVICE"):
+        query([stored], "SELECT * {\n  SERVICE <http://x> { ?s ?p ?o } }")
+    sparql = (
+        "PREFIX service: <urn:load#> # SERVICE\n"
+        "SELECT ?service { ?service service:delete 'INSERT DATA { SERVICE' }"
+    )
+    assert ask(stored, sparql) == []
+
+
+@given(st.text(max_size=60))
+@settings(max_examples=200)
+def test_any_text_gives_an_answer_or_a_query_error(text: str) -> None:
+    try:
+        refuse_writing(text)
+    except QueryError as error:
+        assert "line" in str(error)
+
+
+def test_turtle_needs_triples(stored: StoredMap) -> None:
+    with pytest.raises(QueryError, match="CONSTRUCT"):
+        query([stored], "SELECT * { ?s ?p ?o }").text("ttl")
+
+
+@pytest.mark.parametrize("name", [q.name for q in named_queries()])
+def test_each_query_of_the_library_answers_on_a_map(stored: StoredMap, name: str) -> None:
+    found = named_query(name)
+    assert found.about
+    assert query([stored], found.sparql).rows
+
+
+def test_an_unknown_name_lists_the_library() -> None:
+    with pytest.raises(QueryError, match="@containers-on-supports"):
+        named_query("@nothing")
+    with pytest.raises(QueryError, match="no named query"):
+        named_query("@../vocabulary")
