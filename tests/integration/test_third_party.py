@@ -8,7 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, run_afkb
+
+from running import ROOT, run_afkb
 
 PACKAGE = ROOT / "examples" / "third_party"
 pytestmark = pytest.mark.xdist_group("integration")
