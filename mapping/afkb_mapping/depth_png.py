@@ -43,7 +43,7 @@ def decode_png16(data: bytes | memoryview) -> NDArray[np.uint16]:
 
 def metres(pixels: NDArray[np.uint16], per_metre: float = 1000.0) -> NDArray[np.float32]:
     """Depth (H, W) float32 m of raw pixels; 0 and 65535, both 'no return', become 0."""
-    depth_m = pixels * np.float32(1.0 / per_metre)
+    depth_m = np.divide(pixels, np.float32(per_metre), dtype=np.float32)
     depth_m[pixels == _NO_RETURN] = 0.0
     return depth_m
 

@@ -32,4 +32,4 @@ def afkb_open_source(
 def _is_carmen(path: Path) -> bool:
     with path.open("rb") as file:
         head = file.read(_SNIFFED_BYTES)
-    return any(line.partition(b" ")[0] in _TAGS for line in head.splitlines())
+    return any(b"".join(line.split(None, 1)[:1]) in _TAGS for line in head.splitlines())

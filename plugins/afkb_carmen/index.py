@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.errors import BadFrame
-from afkb_carmen.lines import Pose, compose, invert, parse_odometry, poses_of
+from afkb_carmen.lines import Pose, compose, invert, parse_odometry, poses_of, tag_of
 from afkb_mapping.geometry import T_from_xy_yaw
 
 SCAN_TAGS = (b"FLASER", b"ROBOTLASER1")
@@ -46,7 +46,7 @@ def build_index(path: Path, tag: bytes) -> LogIndex:
     found, stamps, chained = array("q"), array("d"), array("d")
     mount, chain = _Mount(), _Chain()
     for offset, number, line in lines(path):
-        this = line.partition(b" ")[0]
+        this = tag_of(line)
         if this == tag:
             poses = poses_of(line)
             if poses is not None:
@@ -73,7 +73,7 @@ def _stamp(poses: tuple[Pose, Pose, float] | None, earlier: array[float]) -> flo
 
 def scan_tag(path: Path) -> bytes | None:
     """The tag of the scans to read: FLASER if the log has any, for they repeat the others."""
-    found = {line.partition(b" ")[0] for _, _, line in lines(path)}
+    found = {tag_of(line) for _, _, line in lines(path)}
     return next((tag for tag in SCAN_TAGS if tag in found), None)
 
 
@@ -90,8 +90,8 @@ class _Mount:
     """Where the laser sits on the robot, if the two poses of the scan lines tell."""
 
     def __init__(self) -> None:
-        self._low = (math.inf,) * 3
-        self._high = (-math.inf,) * 3
+        self._low: tuple[float, ...] = (math.inf,) * 3
+        self._high: tuple[float, ...] = (-math.inf,) * 3
 
     def add(self, laser: Pose, robot: Pose) -> None:
         at = compose(invert(robot), laser)

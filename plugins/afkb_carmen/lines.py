@@ -66,6 +66,11 @@ class OdometryLine:
     stamp: float
 
 
+def tag_of(line: bytes) -> bytes:
+    """The word that says what a line is; empty for an empty line."""
+    return b"".join(line.split(None, 1)[:1])
+
+
 def parse_scan(line: bytes, fov_rad: float, max_range_m: float) -> ScanLine:
     """A scan line; `BadFrame` says where it is cut short or no number.
 
@@ -78,36 +83,71 @@ def parse_scan(line: bytes, fov_rad: float, max_range_m: float) -> ScanLine:
 
 
 def _parse_flaser(words: list[str], fov_rad: float, max_range_m: float) -> ScanLine:
-    n = _count(words, 1)
-    _expect(words, 2 + n + _FLASER_REST, n)
-    ranges = _numbers(words[2 : 2 + n])
-    tail = _numbers(words[2 + n : 2 + n + 7])
+    n = _flaser_size(words)
     scan = LaserScan(
-        ranges_m=without_errors(ranges, max_range_m),
+        ranges_m=without_errors(_numbers(words[2 : 2 + n]), max_range_m),
         angle_min=-fov_rad / 2,
         angle_increment=angle_step(n, fov_rad),
         range_min_m=_RANGE_MIN_M,
         range_max_m=max_range_m,
     )
-    return ScanLine(scan, Pose(*tail[:3].tolist()), Pose(*tail[3:6].tolist()), float(tail[6]))
+    return ScanLine(scan, *_flaser_poses(words))
 
 
 def _parse_robotlaser(words: list[str]) -> ScanLine:
+    n = _robotlaser_size(words)
+    start, _, step, max_range_m = _numbers(words[2:6]).tolist()
+    ranges = _numbers(words[_ROBOTLASER_HEAD + 1 : _ROBOTLASER_HEAD + 1 + n])
+    scan = LaserScan(
+        ranges_m=without_errors(ranges, max_range_m),
+        angle_min=start,
+        angle_increment=step,
+        range_min_m=_RANGE_MIN_M,
+        range_max_m=max_range_m,
+    )
+    return ScanLine(scan, *_robotlaser_poses(words))
+
+
+def poses_of(line: bytes) -> tuple[Pose, Pose, float] | None:
+    """Laser pose, robot pose and stamp of a scan line without its ranges; None where it is bad.
+
+    An index reads these of every line; the frame's own parse says later what is bad about it.
+    """
+    try:
+        words = _words(line)
+        if words[0] == "ROBOTLASER1":
+            _robotlaser_size(words)
+            return _robotlaser_poses(words)
+        _flaser_size(words)
+        return _flaser_poses(words)
+    except BadFrame:
+        return None
+
+
+def _flaser_size(words: list[str]) -> int:
+    """Number of readings of a FLASER that has all its words."""
+    n = _count(words, 1)
+    _expect(words, 2 + n + _FLASER_REST, n)
+    return n
+
+
+def _flaser_poses(words: list[str]) -> tuple[Pose, Pose, float]:
+    tail = _numbers(words[-9:-2]).tolist()
+    return Pose(*tail[:3]), Pose(*tail[3:6]), tail[6]
+
+
+def _robotlaser_size(words: list[str]) -> int:
+    """Number of readings of a ROBOTLASER1 that has all its words, remissions included."""
     n = _count(words, _ROBOTLASER_HEAD)
     m_at = _ROBOTLASER_HEAD + 1 + n
     m = _count(words, m_at) if len(words) > m_at else 0
     _expect(words, m_at + 1 + m + _ROBOTLASER_REST, n)
-    head = _numbers(words[2:6])
-    ranges = _numbers(words[_ROBOTLASER_HEAD + 1 : m_at])
-    tail = _numbers(words[m_at + 1 + m : m_at + 1 + m + 12])
-    scan = LaserScan(
-        ranges_m=without_errors(ranges, float(head[3])),
-        angle_min=float(head[0]),
-        angle_increment=float(head[2]),
-        range_min_m=_RANGE_MIN_M,
-        range_max_m=float(head[3]),
-    )
-    return ScanLine(scan, Pose(*tail[:3].tolist()), Pose(*tail[3:6].tolist()), float(tail[11]))
+    return n
+
+
+def _robotlaser_poses(words: list[str]) -> tuple[Pose, Pose, float]:
+    tail = _numbers([*words[-14:-8], words[-3]]).tolist()
+    return Pose(*tail[:3]), Pose(*tail[3:6]), tail[6]
 
 
 def parse_odometry(line: bytes) -> OdometryLine:
@@ -119,30 +159,12 @@ def parse_odometry(line: bytes) -> OdometryLine:
     return OdometryLine(Pose(*numbers[:3].tolist()), float(numbers[6]))
 
 
-def poses_of(line: bytes) -> tuple[Pose, Pose, float] | None:
-    """Laser pose, robot pose and stamp of a scan line without its ranges; None where it is bad.
-
-    An index reads these of every line; the frame's own parse says later what is bad about it.
-    """
-    try:
-        words = _words(line)
-        if words[0] == "ROBOTLASER1":
-            tail = _numbers([*words[-14:-8], words[-3]])
-        else:
-            tail = _numbers(words[-9:-2])
-    except BadFrame:
-        return None
-    if len(tail) < 7:
-        return None
-    return Pose(*tail[:3].tolist()), Pose(*tail[3:6].tolist()), float(tail[6])
-
-
 def angle_step(n: int, fov_rad: float) -> float:
     """Angle between beams: 180 and 181 beams over 180° are both one degree apart.
 
     An odd number has a beam at either end, an even one lacks the last.
     """
-    return fov_rad / (n - 1) if n % 2 and n > 1 else fov_rad / n
+    return fov_rad / (n - 1 if n % 2 and n > 1 else max(n, 1))
 
 
 def without_errors(ranges_m: NDArray[np.float64], max_range_m: float) -> NDArray[np.float32]:

@@ -35,7 +35,7 @@ class CarmenOptions(BaseModel):
     max_range: PositiveFloat = 80.0
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class CarmenSource:
     """Scans of a log with the odometry at each; the robot drives on a floor, so z is up."""
 

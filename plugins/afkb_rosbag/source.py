@@ -39,21 +39,21 @@ class Pairing:
     received: NDArray[np.int64]
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class BagSource:
-    """Depth images and scans of a bag, paired by stamp and placed by tf; `uri` is its path."""
+    """Depth images and scans of a bag, paired by stamp and placed by tf.
+
+    A robot's odometry has z up (REP-105), so it is `gravity_aligned`; a hand-held camera's world
+    need not be.
+    """
 
     uri: str
+    gravity_aligned: bool
     path: Path
     topics: Topics
     index: Index
     frames: Frames
     pairing: Pairing
-
-    @property
-    def gravity_aligned(self) -> bool:
-        """A robot's odometry has z up (REP-105); a hand-held camera's world need not."""
-        return self.frames.base is not None
 
     def __len__(self) -> int:
         return len(self.pairing.stamps)
@@ -148,7 +148,8 @@ def open_bag(uri: str, options: Mapping[str, str]) -> BagSource:
         except BadFrame as error:
             raise SourceError(f"{path}: {error}") from error
     frames = choose_frames(index, chosen, path)
-    return BagSource(uri, path, topics, index, frames, pair(index, chosen.max_dt))
+    pairing = pair(index, chosen.max_dt)
+    return BagSource(uri, frames.base is not None, path, topics, index, frames, pairing)
 
 
 def pair(index: Index, max_dt: float) -> Pairing:

@@ -47,7 +47,7 @@ class SevenScenesOptions(BaseModel):
         return value.split(",") if isinstance(value, str) else value
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class SevenScenesSource:
     """Depth frames with camera poses; the base is the camera's body, the world has no stated up.
 

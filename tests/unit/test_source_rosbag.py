@@ -352,7 +352,8 @@ def test_bag_without_camera_info_is_refused(tmp_path: Path) -> None:
 def test_bag_with_zero_intrinsics_is_refused(tmp_path: Path) -> None:
     bag = robot(BagWriter(), info=False)
     bag.camera_info(1.0, f=0.0)
-    assert f"{INFO}: camera intrinsics {WIDTH}x{HEIGHT} fx=0.0" in refusal(bag.write(tmp_path / "b"))
+    why = refusal(bag.write(tmp_path / "b"))
+    assert f"{INFO}: camera intrinsics {WIDTH}x{HEIGHT} fx=0.0" in why
 
 
 def test_bag_without_depth_and_scan_is_refused(tmp_path: Path) -> None:
