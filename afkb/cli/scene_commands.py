@@ -157,6 +157,12 @@ def query(
     ] = None,
     form: Annotated[Format, typer.Option("--format", help="How to print.")] = Format.TABLE,
     as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
+    extensions: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--ontology", metavar="FILE", help="An extension to ask along; may be repeated."
+        ),
+    ] = None,
     list_named: Annotated[
         bool, typer.Option("--list", help="List the queries of the library.")
     ] = False,
@@ -176,7 +182,7 @@ def query(
 
     stored = [load(folder) for folder in folders]
     ontology = state_of(ctx).host.knowledge_base.files
-    answer = ask(stored, sparql, ontology)
+    answer = ask(stored, sparql, [*ontology, *(extensions or [])])
     form = Format.JSON if as_json else form
     if form is Format.TABLE:
         print_table(answer.columns, answer.cells())
