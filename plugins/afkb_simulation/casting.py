@@ -27,18 +27,24 @@ class Hits:
     meshes: NDArray[np.int32]
 
 
+def import_open3d() -> Any:
+    """Open3D, imported where it is used: it takes a second, and system libraries."""
+    try:
+        import open3d
+    except (ImportError, OSError) as error:
+        raise SourceError(
+            f"ray casting needs Open3D, which doesn't load: {error}; on Debian or Ubuntu: "
+            "apt-get install libusb-1.0-0 libgl1 libegl1 libgomp1"
+        ) from error
+    return open3d
+
+
 class Caster:
     """Meshes ready for ray casting."""
 
     def __init__(self, meshes: Sequence[Mesh]) -> None:
-        try:
-            import open3d as o3d
-        except (ImportError, OSError) as error:
-            raise SourceError(
-                f"ray casting needs Open3D, which doesn't load: {error}; on Debian or Ubuntu: "
-                "apt-get install libusb-1.0-0 libgl1 libegl1 libgomp1"
-            ) from error
-        self._as_tensor: Any = o3d.core.Tensor.from_numpy
+        o3d = import_open3d()
+        self._as_tensor = o3d.core.Tensor.from_numpy
         self._scene: Any = o3d.t.geometry.RaycastingScene()
         for mesh in meshes:
             vertices = self._as_tensor(mesh.vertices.astype(np.float32))

@@ -82,9 +82,18 @@ def _place(
     room = room_at(world, (float(T[0, 3]), float(T[1, 3])))
     if room is None:
         raise SourceError(f"{path}: things ({thing.name}).at: in no room; move it into one")
-    built = SHAPES[thing.shape].build(thing.dimensions, thing.parameters)
+    built = _build(thing, path)
     placed[thing.name] = Placed(thing, built, T, room)
     return placed[thing.name]
+
+
+def _build(thing: ThingFile, path: Path) -> Built:
+    if thing.file is None:
+        return SHAPES[thing.shape].build(thing.dimensions, thing.parameters)
+    from afkb_simulation.mesh_files import built_from_file
+
+    key = f"{path}: things ({thing.name}).file"
+    return built_from_file(path.parent / thing.file, thing.size, key)
 
 
 def _T_world_support(carrier: Placed, thing: ThingFile, path: Path) -> NDArray[np.float64]:

@@ -17,7 +17,8 @@ from afkb_simulation.noise import noisy_depth, noisy_ranges
 from afkb_simulation.odometry import drifting
 from afkb_simulation.placing import Placed, place_all, room_at
 from afkb_simulation.rooms import building, openings
-from afkb_simulation.tour import Stop, stops
+from afkb_simulation.tour import stops
+from afkb_simulation.way import check_way
 from afkb_simulation.world_file import CameraFile, LaserFile, WorldFile
 
 _FRAME_STREAM, _ODOMETRY_STREAM = 0, 1
@@ -32,12 +33,12 @@ class Simulation:
         self.placed = place_all(world, path)
         self.stops = stops(world.tour)
         self.T_world_base = [T_from_xy_yaw(s.x, s.y, s.yaw) for s in self.stops]
-        self._check_way(path)
+        check_way(world, self.stops, self.placed, self.present, path)
         rng = np.random.default_rng([world.seed, _ODOMETRY_STREAM])
         self._T_odom_base = drifting(self.T_world_base, world.odometry_drift, rng)
         # labels, heights and depth of one frame share its rays
         self.camera_hits = lru_cache(maxsize=1)(self._camera_hits)
-        self._casters: dict[tuple[int, ...], Caster] = {}
+        self._caster_of = lru_cache(maxsize=2)(self._build_caster)
 
     @cached_property
     def camera(self) -> PinholeCamera | None:
@@ -109,28 +110,15 @@ class Simulation:
         return LaserScan(ranges, start, increment, *laser.range)
 
     def _caster(self, index: int) -> Caster:
-        present = self.present(index)
-        if present not in self._casters:
-            things = [self.placed[i].mesh for i in present]
-            self._casters[present] = Caster([building(self.world, self.openings), *things])
-        return self._casters[present]
+        return self._caster_of(self.present(index))
+
+    def _build_caster(self, present: tuple[int, ...]) -> Caster:
+        things = [self.placed[i].mesh for i in present]
+        return Caster([building(self.world, self.openings), *things])
 
     def _mesh_numbers(self, index: int) -> NDArray[np.int32]:
         """From the caster's mesh index (-1 last) to 0 for the building, 1 + i for thing i."""
         return np.array([0, *(1 + i for i in self.present(index)), -1], dtype=np.int32)
-
-    def _check_way(self, path: Path) -> None:
-        """Refuse a tour that leads through walls."""
-        for stop in self.stops:
-            if room_at(self.world, (stop.x, stop.y)) is None and not self._in_doorway(stop):
-                name = self.world.tour.waypoints[stop.leg].name
-                raise SourceError(
-                    f"{path}: tour.waypoints ({name}): the way there leaves the rooms at "
-                    f"({stop.x:.2f}, {stop.y:.2f}); lead it through a doorway with `via`"
-                )
-
-    def _in_doorway(self, stop: Stop) -> bool:
-        return any(math.dist((stop.x, stop.y), d.at) <= d.width / 2 for d in self.world.doorways)
 
 
 def _is_there(placed: Placed, leg: int, waypoints: list[str]) -> bool:

@@ -7,7 +7,9 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from afkb_simulation.polygons import XY, crosses_itself, signed_area
-from afkb_simulation.shapes import SHAPES
+from afkb_simulation.shapes import SHAPES, Shape
+
+MESH = "mesh"
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]*$")]
 Category = Annotated[str, Field(pattern=r"^[A-Z][A-Za-z0-9]*$")]
@@ -83,14 +85,16 @@ class ThingFile(_Strict):
     headboard_m: Positive | None = None
     boards: Annotated[int, Field(ge=2, le=20)] | None = None
     wall_m: Positive | None = None
+    file: Annotated[str, Field(min_length=1)] | None = None
 
     @model_validator(mode="after")
     def _fits_its_shape(self) -> ThingFile:
-        if self.shape not in SHAPES:
-            raise ValueError(f"no shape {self.shape!r}; shapes: {', '.join(sorted(SHAPES))}")
-        takes = SHAPES[self.shape].parameters
+        if self.shape not in (*SHAPES, MESH):
+            raise ValueError(f"no shape {self.shape!r}; shapes: {', '.join(sorted(SHAPES))}, mesh")
+        if (self.shape == MESH) != (self.file is not None):
+            raise ValueError("a mesh takes a `file`, and nothing else does; add or remove it")
         for key in ("seat_m", "headboard_m", "boards", "wall_m"):
-            if getattr(self, key) is not None and key not in takes:
+            if getattr(self, key) is not None and key not in self._usual.parameters:
                 raise ValueError(f"a {self.shape} takes no {key}; remove it")
         self._check_proportions()
         return self
@@ -104,14 +108,18 @@ class ThingFile(_Strict):
             raise ValueError(f"wall_m {parameters['wall_m']} leaves nothing hollow in {x}x{y}x{z}")
 
     @property
+    def _usual(self) -> Shape:
+        return SHAPES.get(self.shape, SHAPES["block"])
+
+    @property
     def dimensions(self) -> tuple[float, float, float]:
-        """Its size, the shape's usual one unless given, m."""
-        return self.size or SHAPES[self.shape].size
+        """Its size, the shape's usual one unless given, m; a mesh file's own is not known here."""
+        return self.size or self._usual.size
 
     @property
     def parameters(self) -> dict[str, float]:
         """What else shapes it, the shape's usual values unless given."""
-        usual = SHAPES[self.shape].parameters
+        usual = self._usual.parameters
         given = {key: getattr(self, key) for key in usual}
         return {key: usual[key] if value is None else value for key, value in given.items()}
 

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from afkb.errors import SourceError
+from afkb.testing import check_source
 from afkb_mapping.geometry import back_project, transform
 from afkb_simulation.source import WorldSource, open_world
 from afkb_simulation.truth import load_truth
@@ -94,6 +96,71 @@ things:
     pot, can = (heights[labels == names.index(n)] for n in ("pot", "can"))
     assert ((pot > 0.003) & (pot < 0.007)).sum() > 20
     assert (np.abs(can - 0.5) < 1e-3).sum() > 100
+
+
+BOARD_ON_A_FOOT = """
+v 0 0 0\nv 0.2 0 0\nv 0.2 0.2 0\nv 0 0.2 0\nv 0.1 0.1 1
+v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1
+f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 6 7 8\nf 6 8 9
+"""
+
+
+def test_a_mesh_file_stands_on_its_foot_and_carries_things(tmp_path: Path) -> None:
+    (tmp_path / "board.obj").write_text(BOARD_ON_A_FOOT, encoding="utf-8")
+    things = """
+things:
+  - {name: board, shape: mesh, file: board.obj, category: Table, at: [3, 2], size: [1, 1, 0.6]}
+  - {name: can, shape: can, category: Can, on: board, at: [-0.4, 0]}
+"""
+    uri, _ = _open(
+        tmp_path, ROOM + things + QUIET + TOUR.replace("far, at: [5, 2]", "far, at: [1, 3]")
+    )
+    truth = load_truth(uri)
+    board = truth.things["board"]
+    assert board.top_height == pytest.approx(0.6)
+    assert board.box.size_xyz == pytest.approx((1, 1, 0.6))
+    assert truth.things["can"].box.center_xyz == pytest.approx((2.6, 2, 0.66))
+    labels, names = truth.labels(0)
+    seen = truth.heights(0)[labels == names.index("board")]
+    assert (np.abs(seen - 0.6) < 1e-3).sum() > 200
+
+
+@pytest.mark.parametrize("content", ["", "no mesh\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"])
+def test_a_mesh_file_without_a_solid_is_refused(tmp_path: Path, content: str) -> None:
+    (tmp_path / "bad.obj").write_text(content, encoding="utf-8")
+    thing = "things: [{name: it, shape: mesh, file: bad.obj, category: It, at: [3, 1]}]\n"
+    with pytest.raises(SourceError, match=r"\(it\)\.file: .*bad\.obj"):
+        _open(tmp_path, ROOM + thing + TOUR)
+
+
+def test_a_thing_comes_on_the_way_to_one_waypoint_and_goes_after_another(tmp_path: Path) -> None:
+    thing = """
+things:
+  - name: ball
+    shape: ball
+    category: Ball
+    at: [3, 3.5]
+    present: {from: far, until: far}
+"""
+    uri, _ = _open(tmp_path, ROOM + thing + TOUR)
+    truth = load_truth(uri)
+    frames, last = truth.things["ball"].frames, truth.waypoints["start"].frames[-1]
+    assert frames == tuple(range(last + 1, truth.waypoints["far"].frames[-1] + 1))
+    assert truth.things["ball"].dynamic
+
+
+def test_the_truth_knows_rooms_and_doorways(tmp_path: Path) -> None:
+    uri, _ = _open(tmp_path, ROOM + TOUR)
+    truth = load_truth(uri)
+    (doorway,) = truth.doorways
+    assert (doorway.x, doorway.y) == pytest.approx((4.1, 2.0))
+    assert (doorway.width, doorway.height) == pytest.approx((0.8, 2.1))
+    assert truth.rooms["b"].area == pytest.approx(3.8 * 2 + 1.8 * 2)
+    assert truth.frame_rooms[truth.waypoints["far"].frames[0]] == "b"
+
+
+def test_it_keeps_a_sources_contract(tmp_path: Path) -> None:
+    check_source(_open(tmp_path, ROOM + TOUR)[1], at_most=4)
 
 
 def test_axial_noise_follows_the_square_law(tmp_path: Path) -> None:
