@@ -32,8 +32,9 @@ def find_doorways(
     labels: Labels, clearance: NDArray[np.float32], grid: OccupancyGrid
 ) -> tuple[DoorwayShape, ...]:
     """One doorway per place where two rooms touch; `clearance` (rows, cols), m, to obstacles."""
-    obstacle_index = ndimage.distance_transform_edt(
-        labels > 0, return_distances=False, return_indices=True
+    obstacle_index: NDArray[np.intp] = np.asarray(
+        ndimage.distance_transform_edt(labels > 0, return_distances=False, return_indices=True),
+        dtype=np.intp,
     )
     doorways = []
     for a, b in _touching_pairs(labels):
@@ -41,8 +42,8 @@ def find_doorways(
         places, count = ndimage.label(touching, structure=np.ones((3, 3)))
         for place in range(1, count + 1):
             height = np.where(places == place, clearance, -1.0)
-            cell = np.array(np.unravel_index(np.argmax(height), height.shape))
-            nearest = obstacle_index[:, cell[0], cell[1]]
+            row, col = divmod(int(np.argmax(height)), height.shape[1])
+            cell, nearest = np.array([row, col]), obstacle_index[:, row, col]
             doorways.append(_doorway(labels, cell, nearest, (a, b), grid))
     return tuple(doorways)
 

@@ -20,7 +20,7 @@ from afkb_mapping.free_space import Mask, free_space
 Labels = NDArray[np.int32]
 
 WIDEST_DOOR_M = 2.4
-"""A wider passage joins: openings without a door, as between kitchen and dining room, reach this."""
+"""A wider passage joins: openings without a door, as between kitchen and dining room."""
 NARROWING = 0.75
 """A passage wider than this part of the narrower side is no narrowing: it joins."""
 LEAST_ROOM_M2 = 2.5

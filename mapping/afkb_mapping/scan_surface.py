@@ -66,15 +66,20 @@ def surface_of(scan: LaserScan) -> SurfacePoints:
     return SurfacePoints(points[straight], normals[straight])
 
 
-def _windows(points: Points) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Half-open index ranges of the points that share each point's piece of surface."""
+def pieces_of(points: Points) -> NDArray[np.intp]:
+    """Number of the piece of surface that each point (N, 2), in beam order, belongs to, from 0."""
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     padded = np.concatenate([[np.inf], steps, [np.inf]])
     beside = np.minimum(padded[:-2], padded[2:])
     torn = (steps > GAP_M) & (steps > GAP_RATIO * beside)
-    arc = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.concatenate([[0], np.cumsum(torn)])
+
+
+def _windows(points: Points) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Half-open index ranges of the points that share each point's piece of surface."""
+    piece = pieces_of(points)
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     index = np.arange(len(points))
-    piece = np.concatenate([[0], np.cumsum(torn)])
     first = np.minimum(np.searchsorted(arc, arc - WINDOW_M), index - WINDOW_BEAMS)
     last = np.maximum(np.searchsorted(arc, arc + WINDOW_M, side="right"), index + WINDOW_BEAMS + 1)
     return (

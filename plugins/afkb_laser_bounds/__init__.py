@@ -1,1 +1,20 @@
 """Detector: bounds (walls) as line segments in laser scans."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from afkb.plugins import hookimpl
+
+if TYPE_CHECKING:
+    from afkb.knowledge import KnowledgeBase
+    from afkb.plugins.protocols import Detector
+
+
+@hookimpl
+def afkb_detectors(knowledge_base: KnowledgeBase) -> Iterable[Detector]:
+    """The laser bound detector."""
+    from afkb_laser_bounds.detector import LaserBoundDetector
+
+    return [LaserBoundDetector()]
