@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import glob
 import os
 import shutil
 import tempfile
@@ -15,6 +16,7 @@ from afkb.store.stored import SCENE_FILE
 
 _AT_FDCWD = -100
 _RENAME_EXCHANGE = 2
+_SCRATCH = ".partial"
 
 
 def check_out(folder: Path | str) -> Path:
@@ -53,13 +55,32 @@ def _refuse_what_is_no_map(folder: Path) -> None:
 @contextmanager
 def scratch_beside(folder: Path) -> Iterator[Path]:
     """A fresh folder beside `folder`, on the same disk; gone afterwards if it is still there."""
-    prefix = f".{folder.name}."
-    scratch = Path(tempfile.mkdtemp(prefix=prefix, suffix=".partial", dir=folder.parent))
+    _remove_leftovers(folder)
+    prefix = f".{folder.name}.{os.getpid()}."
+    scratch = Path(tempfile.mkdtemp(prefix=prefix, suffix=_SCRATCH, dir=folder.parent))
     try:
         scratch.chmod(0o777 & ~_umask())
         yield scratch
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
+
+
+def _remove_leftovers(folder: Path) -> None:
+    """Remove scratch folders of runs that were killed while they wrote this map."""
+    for left in sorted(folder.parent.glob(f".{glob.escape(folder.name)}.*{_SCRATCH}")):
+        writer = left.name.removeprefix(f".{folder.name}.").partition(".")[0]
+        if writer.isdigit() and not _alive(int(writer)):
+            shutil.rmtree(left, ignore_errors=True)
+
+
+def _alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
 
 
 def _umask() -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Protocol
 
@@ -9,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pyoxigraph import Literal, NamedNode, Triple
 
-from afkb.errors import AfkbError
+from afkb.errors import AfkbError, MapError
 from afkb.store.vocabulary import AFN, OTHER_NAMES, escaped, term
 
 Value = NamedNode | Literal | str | float | int | bool
 
+_ROUNDING = 1e-6
 # The two answers that stand outside every ontology: a room or a thing of no category it knows.
 _ELSEWHERE = ("UnknownRoom", "SomethingElse")
 
@@ -28,8 +30,7 @@ class Names(Protocol):
 
 def _number(value: float, digits: int) -> Literal:
     """A double rounded to what is meant, so that noise in the last bits changes no byte."""
-    rounded = round(float(value), digits)
-    return Literal(rounded + 0.0)
+    return Literal(round(float(value), digits) + 0.0)
 
 
 class Scribe:
@@ -61,12 +62,16 @@ class Scribe:
         for value in values:
             if value is None:
                 continue
+            if isinstance(value, float | np.floating) and not math.isfinite(value):
+                raise MapError(f"{subject.value}: {predicate} is {value}; the mapper has a bug")
             said = value if isinstance(value, NamedNode | Literal) else _literal(value)
             self.triples.append(Triple(subject, term(predicate), said))
 
     def probability(self, subject: NamedNode, predicate: str, p: float) -> None:
-        """State a probability, to 1e-9 and inside 0..1."""
-        self.triples.append(Triple(subject, term(predicate), _number(min(max(p, 0), 1), 9)))
+        """State a probability, to 1e-9; `MapError` where it is not inside 0..1."""
+        if not 0 <= p <= 1 + _ROUNDING:
+            raise MapError(f"{subject.value}: {predicate} is {p}, not a probability")
+        self.triples.append(Triple(subject, term(predicate), _number(min(p, 1.0), 9)))
 
     def belief(
         self, about: NamedNode, kind: str, of: str, beliefs: Iterable[tuple[str, float]]

@@ -238,6 +238,22 @@ def test_a_broken_map_is_told_in_one_line(tmp_path: Path, content: bytes | None,
     assert "\n" not in str(told.value)
 
 
+def test_what_a_killed_run_left_is_cleared_away(tmp_path: Path) -> None:
+    with subprocess.Popen([sys.executable, "-c", ""]) as gone:
+        pass
+    (tmp_path / f".m.{gone.pid}.x.partial").mkdir()
+    (tmp_path / f".m.{os.getpid()}.y.partial").mkdir()
+    write(tmp_path / "m")
+    assert sorted(p.name for p in tmp_path.iterdir()) == [f".m.{os.getpid()}.y.partial", "m"]
+
+
+@pytest.mark.parametrize("wrong", [{"yaw": math.nan}, {"existence": 1.2}, {"existence": math.nan}])
+def test_numbers_that_mean_nothing_are_refused(tmp_path: Path, wrong: dict[str, float]) -> None:
+    with pytest.raises(MapError, match="#n1: afn:"):
+        write(tmp_path / "m", entities=(entity("n1", **wrong),), closures=(), edges=())
+    assert not list(tmp_path.iterdir())
+
+
 def test_no_such_map(tmp_path: Path) -> None:
     with pytest.raises(MapError, match="no such map"):
         load(tmp_path / "nowhere")
