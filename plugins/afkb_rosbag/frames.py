@@ -75,6 +75,7 @@ def choose_frames(index: Index, options: BagOptions, path: Path) -> Frames:
                 "/tf_static, choose base_frame=, or leave the sensor out with depth_topic=none or "
                 "scan_topic=none"
             )
+    index.tree.keep_only([(odom, base or odom), *((base or odom, s) for s in sensors)])
     return Frames(index.tree, odom, base, camera, laser)
 
 

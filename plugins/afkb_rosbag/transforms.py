@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from array import array
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,26 +19,29 @@ NS = 1_000_000_000
 class Track:
     """Poses of a child frame in its parent over time: stamps (ns), metres, quaternions (x y z w).
 
-    `static` holds at all times. 64 bytes a sample, so that hours of odometry stay small.
+    `static` holds at all times, the last one stated. 64 bytes a sample, so that hours of odometry
+    stay small.
     """
 
     def __init__(self, static: bool = False) -> None:
         self.static = static
-        self._stamps = array("q")
-        self._values = array("d")
-        self._sorted: tuple[NDArray[np.int64], NDArray[np.float64]] | None = None
+        self._new_stamps = array("q")
+        self._new_values = array("d")
+        self._stamps = np.empty(0, np.int64)
+        self._values = np.empty((0, 7))
 
     def __len__(self) -> int:
-        return len(self._stamps)
+        return len(self._new_stamps) + len(self._stamps)
 
     def add(self, stamp: int, xyz: tuple[float, ...], quat_xyzw: tuple[float, ...]) -> None:
         """Take in a pose; one that is not finite or has a zero quaternion counts as missing."""
         norm = math.sqrt(sum(q * q for q in quat_xyzw))
         if not (math.isfinite(norm) and norm > 1e-6 and all(map(math.isfinite, xyz))):
             return
-        self._stamps.append(stamp)
-        self._values.extend((*xyz, *(q / norm for q in quat_xyzw)))
-        self._sorted = None
+        if self.static:
+            del self._new_stamps[:], self._new_values[:]
+        self._new_stamps.append(stamp)
+        self._new_values.extend((*xyz, *(q / norm for q in quat_xyzw)))
 
     def at(self, stamp: int, max_dt: float, max_gap: float) -> NDArray[np.float64]:
         """T_parent_child (4, 4) at a stamp (ns).
@@ -45,7 +49,8 @@ class Track:
         Interpolated between samples at most `max_gap` s apart, else the nearest within `max_dt` s;
         `BadFrame` where there is neither.
         """
-        stamps, values = self._in_order()
+        self._sort_in()
+        stamps, values = self._stamps, self._values
         if self.static:
             return _matrix(values[-1])
         after = int(np.searchsorted(stamps, stamp))
@@ -62,13 +67,15 @@ class Track:
             raise BadFrame(f"no transform within {max_dt:g} s (nearest {gap:.3f} s away)")
         return _matrix(values[near])
 
-    def _in_order(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        if self._sorted is None:
-            stamps = np.array(self._stamps, dtype=np.int64)
-            order = np.argsort(stamps, kind="stable")
-            values = np.array(self._values).reshape(-1, 7)
-            self._sorted = stamps[order], values[order]
-        return self._sorted
+    def _sort_in(self) -> None:
+        """Move what was added since the last look-up to where it belongs in time."""
+        if not self._new_stamps:
+            return
+        stamps = np.concatenate([self._stamps, np.array(self._new_stamps, dtype=np.int64)])
+        values = np.concatenate([self._values, np.array(self._new_values).reshape(-1, 7)])
+        order = np.argsort(stamps, kind="stable")
+        self._stamps, self._values = stamps[order], values[order]
+        self._new_stamps, self._new_values = array("q"), array("d")
 
 
 def _between(a: NDArray[np.float64], b: NDArray[np.float64], share: float) -> NDArray[np.float64]:
@@ -121,6 +128,12 @@ class FrameTree:
         self.links = {k: t for k, t in self.links.items() if k[1] != child}
         self.links[(parent, child)] = track
         self._chains.clear()
+
+    def keep_only(self, ends: Sequence[tuple[str, str]]) -> None:
+        """Forget every link that lies on no chain between these pairs of frames."""
+        steps = {step for a, b in ends for step in self._chain(a, b) or ()}
+        used = steps | {(child, parent) for parent, child in steps}
+        self.links = {key: track for key, track in self.links.items() if key in used}
 
     @property
     def frames(self) -> set[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +41,16 @@ def png(pixels: NDArray[Any]) -> bytes:
     return cv2.imencode(".png", pixels)[1].tobytes()
 
 
+@cache
+def typestore(ros1: bool) -> Any:
+    """Message types of a ROS; ROS 1's lack tf2's."""
+    store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
+    if ros1:
+        text = "geometry_msgs/TransformStamped[] transforms"
+        store.register(get_types_from_msg(text, "tf2_msgs/msg/TFMessage"))
+    return store
+
+
 @dataclass
 class BagWriter:
     """Collects messages, then writes them in order of time of recording."""
@@ -48,10 +59,7 @@ class BagWriter:
     messages: list[tuple[int, str, str, Any]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.store = get_typestore(Stores.ROS1_NOETIC if self.ros1 else Stores.ROS2_HUMBLE)
-        if self.ros1:
-            text = "geometry_msgs/TransformStamped[] transforms"
-            self.store.register(get_types_from_msg(text, "tf2_msgs/msg/TFMessage"))
+        self.store = typestore(self.ros1)
 
     def new(self, name: str, **fields: Any) -> Any:
         return self.store.types[name](**fields)
