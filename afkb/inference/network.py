@@ -13,9 +13,6 @@ from afkb.inference.relations import RelationshipNetwork
 from afkb.inference.rooms import RoomNetwork
 from afkb.knowledge import SOMETHING_ELSE, KnowledgeBase
 
-_AFFORDED = 0.5
-"""A feature at least this probable counts as afforded where a yes or no is needed."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Network:
@@ -82,12 +79,12 @@ class Network:
         A thing counts by the narrowest features that it affords: a closed package, which is also
         a container, counts as closed.
         """
-        likelihoods, _ = self.objects.observed(affordances, size_xyz, top_height_m)
+        self.objects.check(affordances, size_xyz, top_height_m)
+        afforded = self.objects.afforded(affordances)
         return tuple(
             name
             for name, evidence in sorted(self.knowledge_base.evidence_classes.items())
-            if likelihoods.get(evidence.feature, 0.0) >= _AFFORDED
-            and evidence.holds(size_xyz, top_height_m)
+            if evidence.feature in afforded and evidence.holds(size_xyz, top_height_m)
         )
 
     def room_posterior(self, counts: Mapping[str, int]) -> dict[str, float]:

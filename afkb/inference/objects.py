@@ -63,14 +63,12 @@ class ObjectNetwork:
         """The evidence as the network takes it: likelihoods of features, bands of measures.
 
         A feature's probability p is virtual evidence with likelihoods (1 - p, p): 0.5 says
-        nothing, and a feature that isn't named is unobserved. What is implied by a narrower
-        feature is no evidence of its own. Of what affords support only the upper surface is
-        measured, so its own vertical extent is unobserved.
+        nothing, and a feature that isn't named is unobserved. What a narrower feature that is as
+        probable implies is no evidence of its own. Of what affords support only the upper surface
+        is measured, so its own vertical extent is unobserved.
         """
-        _check(affordances, size_xyz, top_height_m, self.implied)
-        implied = frozenset[str]().union(
-            *(self.implied[name] for name, p in affordances.items() if p >= 0.5)
-        )
+        self.check(affordances, size_xyz, top_height_m)
+        implied = self._implied_by(affordances)
         likelihoods = {
             name: float(p)
             for name, p in sorted(affordances.items())
@@ -83,6 +81,47 @@ class ObjectNetwork:
             if value > 0 and not hidden:
                 bands[name] = band_of(value, SIZE_EDGES_M)
         return likelihoods, bands
+
+    def check(
+        self,
+        affordances: Mapping[str, float],
+        size_xyz: tuple[float, float, float],
+        top_height_m: float,
+    ) -> None:
+        """Raise `EvidenceError` for unknown features and values out of range."""
+        for name, p in affordances.items():
+            if name not in self.implied:
+                raise EvidenceError(
+                    f"{name!r} is no feature of the ontology; see `afkb ontology show`"
+                )
+            if not (math.isfinite(p) and 0 <= p <= 1):
+                raise EvidenceError(f"{name} has probability {p}, which is not in 0..1")
+        if len(size_xyz) != 3 or not all(math.isfinite(v) and v >= 0 for v in size_xyz):
+            raise EvidenceError(f"size {tuple(size_xyz)}: expected three finite extents in metres")
+        if not math.isfinite(top_height_m):
+            raise EvidenceError(f"top height {top_height_m}: expected a finite height in metres")
+
+    def afforded(self, affordances: Mapping[str, float]) -> list[str]:
+        """The features that a thing affords rather than not, one of each chain of broader ones.
+
+        The most probable of a chain; the narrowest where they are equally probable.
+        """
+        kept = {f: p for f, p in affordances.items() if f in self.implied and p >= 0.5}
+        implied = self._implied_by(kept)
+        return [
+            name
+            for name, p in sorted(kept.items())
+            if name not in implied and all(kept.get(b, 0.0) <= p for b in self.implied[name])
+        ]
+
+    def _implied_by(self, affordances: Mapping[str, float]) -> set[str]:
+        return {
+            broader
+            for name, p in affordances.items()
+            if p > 0.5
+            for broader in self.implied.get(name, ())
+            if affordances.get(broader, 0.0) <= p
+        }
 
     def posterior(
         self,
@@ -159,20 +198,3 @@ def _broader(kb: KnowledgeBase, name: str) -> frozenset[str]:
         found.append(broader)
         broader = kb.features[broader].broader
     return frozenset(found)
-
-
-def _check(
-    affordances: Mapping[str, float],
-    size_xyz: tuple[float, float, float],
-    top_height_m: float,
-    known: Mapping[str, object],
-) -> None:
-    for name, p in affordances.items():
-        if name not in known:
-            raise EvidenceError(f"{name!r} is no feature of the ontology; see `afkb ontology show`")
-        if not (math.isfinite(p) and 0 <= p <= 1):
-            raise EvidenceError(f"{name} has probability {p}, which is not in 0..1")
-    if len(size_xyz) != 3 or not all(math.isfinite(v) and v >= 0 for v in size_xyz):
-        raise EvidenceError(f"size {tuple(size_xyz)}: expected three finite extents in metres")
-    if not math.isfinite(top_height_m):
-        raise EvidenceError(f"top height {top_height_m}: expected a finite height in metres")

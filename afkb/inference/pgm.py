@@ -83,7 +83,7 @@ def write_bif(network: Network, path: Path) -> None:
     _add_objects(builder, network.objects)
     _add_rooms(builder, network.rooms)
     _add_relations(builder, network.relations)
-    BIFWriter(builder.model()).write_bif(str(path))
+    BIFWriter(builder.model()).write(str(path))
 
 
 def _add_objects(builder: _Builder, network: ObjectNetwork) -> None:

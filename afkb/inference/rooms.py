@@ -65,7 +65,7 @@ class RoomNetwork:
 
 def bin_of(name: str, count: int) -> int:
     """Index of the bin of a count of an evidence class."""
-    if count != int(count) or count < 0:
+    if not (math.isfinite(count) and count == int(count) and count >= 0):
         raise EvidenceError(f"{name} has count {count}; expected a whole number, 0 or more")
     return next(i for i, (_, last) in enumerate(COUNT_BINS) if last is None or count <= last)
 

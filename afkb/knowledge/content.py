@@ -24,7 +24,7 @@ from afkb.knowledge.names import fragment
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """The typed items by name, the numbers for the network, the IRI of every name, and the raw facts."""
+    """The typed items by name, the network's numbers, the IRI of every name, and the raw facts."""
 
     features: Mapping[str, Feature]
     scales: Mapping[str, Scale]

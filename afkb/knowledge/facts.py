@@ -106,6 +106,8 @@ def _load(world: Any, file: Path) -> Any:
 
 def _collect(world: Any, ontology: Any, file: Path, facts: Facts) -> None:
     graph = world.as_rdflib_graph().get_context(ontology)
+    if all(str(predicate) == RDF_TYPE for _, predicate, _ in graph.triples((None, None, None))):
+        raise KnowledgeError(f"{file}: states nothing; expected an ontology in RDF/XML")
     for subject, predicate, value in graph.triples((None, None, None)):
         properties = facts.values.setdefault(str(subject), {})
         values = properties.setdefault(str(predicate), [])

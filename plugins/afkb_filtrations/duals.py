@@ -104,12 +104,11 @@ class DualPredictor:
 
 def _applying(network: Network, detection: Detection, duals: list[Dual]) -> Dual | None:
     """The dual whose evidence the detection affords; of several, that of the narrowest feature."""
-    afforded = {f for f, p in detection.affordances.items() if p >= 0.5}
-    implied = {b for f in afforded for b in network.objects.implied.get(f, ())}
+    afforded = network.objects.afforded(detection.affordances)
     fitting = [
         d
         for d in duals
-        if d.evidence in afforded - implied and detection.box.bottom >= d.evidence_bottom_min_m
+        if d.evidence in afforded and detection.box.bottom >= d.evidence_bottom_min_m
     ]
     return max(fitting, key=lambda d: (d.strength, d.name), default=None)
 

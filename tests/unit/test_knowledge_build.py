@@ -1,0 +1,98 @@
+from pathlib import Path
+
+import pytest
+from rdflib import Graph, URIRef
+from rdflib.compare import isomorphic
+from rdflib.namespace import DCTERMS, OWL, RDF, RDFS, SKOS
+
+from afkb.errors import KnowledgeError
+from afkb.knowledge import AFN, bundled_ontology
+from afkb.knowledge.build import build_ontology, property_of, write_ontology
+from afkb.knowledge.names import STATUSES
+
+TABLES = Path(__file__).parents[2] / "ontology" / "tables"
+STATUS = URIRef(AFN + "status")
+
+
+@pytest.fixture(scope="module")
+def graph() -> Graph:
+    return Graph().parse(bundled_ontology(), format="xml")
+
+
+def named(graph: Graph) -> list[URIRef]:
+    return sorted({s for s in graph.subjects() if str(s).startswith(AFN)})
+
+
+def test_the_ontology_is_what_its_tables_say(graph: Graph) -> None:
+    assert isomorphic(graph, build_ontology(TABLES))
+
+
+def test_the_same_tables_give_the_same_bytes(tmp_path: Path) -> None:
+    write_ontology(TABLES, tmp_path / "again.owl")
+    assert (tmp_path / "again.owl").read_bytes() == bundled_ontology().read_bytes()
+
+
+def test_every_term_has_a_label_and_every_named_one_a_definition(graph: Graph) -> None:
+    assert [s for s in named(graph) if (s, RDFS.label, None) not in graph] == []
+    undefined = [s for s in named(graph) if (s, SKOS.definition, None) not in graph]
+    assert [s for s in undefined if "." not in s.removeprefix(AFN)] == []
+
+
+def test_every_statement_carries_a_status_and_a_source(graph: Graph) -> None:
+    individuals = set(graph.subjects(RDF.type, OWL.NamedIndividual))
+    vocabulary = {URIRef(AFN + n) for n in ("Static", "Dynamic")}
+    for individual in sorted(individuals - vocabulary):
+        assert str(graph.value(individual, STATUS)) in STATUSES, individual
+        assert (individual, DCTERMS.source, None) in graph, individual
+
+
+def test_the_68_features_say_how_much_of_them_is_reconstruction(graph: Graph) -> None:
+    kinds = {"StructuralAffordance": 25, "MaterialAffordance": 10, "GraspAffordance": 33}
+    for kind, count in kinds.items():
+        assert len(list(graph.subjects(RDF.type, URIRef(AFN + kind)))) == count
+    assert str(graph.value(URIRef(AFN + "PassAbility"), STATUS)) == "proposed"
+    assert str(graph.value(URIRef(AFN + "SupportAbility"), STATUS)) == "stated"
+    assert str(graph.value(URIRef(AFN + "LateralGrasp"), STATUS)) == "published taxonomy"
+
+
+def test_no_name_is_both_class_and_individual(graph: Graph) -> None:
+    classes = set(graph.subjects(RDF.type, OWL.Class))
+    assert classes & set(graph.subjects(RDF.type, OWL.NamedIndividual)) == set()
+
+
+def test_map_vocabulary_is_declared(graph: Graph) -> None:
+    node = URIRef(AFN + "MapNode")
+    for name in ("RobotPlace", "ObservedEntity", "DualPrediction", "CoOccurrencePrediction"):
+        assert (URIRef(AFN + name), RDFS.subClassOf, node) in graph
+    for name in ("x", "y", "z", "sizeX", "sizeY", "sizeZ", "yaw", "existence", "observations"):
+        assert (URIRef(AFN + name), RDF.type, OWL.DatatypeProperty) in graph
+
+
+@pytest.mark.parametrize(
+    ("table", "old", "new", "message"),
+    [
+        ("duals", "0.7,0.15", "seven,0.15", "duals.csv, line 2: strength 'seven' is no number"),
+        ("rooms", "stated", "surely", "rooms.csv, line 2: status 'surely' is none of"),
+        ("afbits", "Cup,ContainAbility", "Cup,HoldAbility", "HoldAbility, which no table has"),
+        ("scales", "Medium,", "Small,", "scales.csv, line 3: Small is stated a second time"),
+    ],
+)
+def test_a_bad_row_is_refused_with_its_place(
+    tmp_path: Path, table: str, old: str, new: str, message: str
+) -> None:
+    for path in TABLES.iterdir():
+        text = path.read_text(encoding="utf-8")
+        changed = text.replace(old, new, 1) if path.stem == table else text
+        (tmp_path / path.name).write_text(changed, encoding="utf-8")
+    with pytest.raises(KnowledgeError, match=message):
+        build_ontology(tmp_path)
+
+
+def test_a_missing_table_is_named(tmp_path: Path) -> None:
+    with pytest.raises(KnowledgeError, match=r"vocabulary\.csv: no such table"):
+        build_ontology(tmp_path)
+
+
+def test_columns_state_properties_in_si_units() -> None:
+    assert property_of("length_min_m") == URIRef(AFN + "lengthMin")
+    assert property_of("strength") == URIRef(AFN + "strength")
