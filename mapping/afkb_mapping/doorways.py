@@ -12,6 +12,7 @@ from scipy import ndimage
 from afkb.flow import OccupancyGrid
 
 Labels = NDArray[np.int32]
+Window = tuple[slice, slice]
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +52,10 @@ def find_doorways(
 def _touching_pairs(labels: Labels) -> list[tuple[int, int]]:
     """Pairs of different room labels in neighbouring cells, smaller label first, sorted."""
     pairs: set[tuple[int, int]] = set()
-    shifts = [(np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:])]
+    shifts: list[tuple[Window, Window]] = [
+        (np.s_[:, :-1], np.s_[:, 1:]),
+        (np.s_[:-1, :], np.s_[1:, :]),
+    ]
     shifts += [(np.s_[:-1, :-1], np.s_[1:, 1:]), (np.s_[:-1, 1:], np.s_[1:, :-1])]
     for here, there in shifts:
         a, b = labels[here], labels[there]

@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 
 SPLIT_M = 0.05
 """A point this far from the chord makes a corner: range noise of 1 cm stays below it."""
+MAX_GAP_M = 0.5
+"""Between beams further apart than this a door may stand open, so a piece ends there."""
 MIN_LENGTH_M = 0.3
 """Shorter pieces bound nothing: legs, bins, edges."""
 MIN_BEAMS = 6
@@ -43,7 +45,9 @@ def segments_of(scan: LaserScan) -> list[Segment]:
     points = scan.points_xy
     if len(points) < MIN_BEAMS:
         return []
-    starts = np.flatnonzero(np.diff(pieces_of(points), prepend=-1))
+    apart = np.linalg.norm(np.diff(points, axis=0), axis=1) > MAX_GAP_M
+    apart |= np.diff(pieces_of(points)) > 0
+    starts = np.concatenate([[0], np.flatnonzero(apart) + 1])
     found = []
     for first, last in zip(starts, [*starts[1:], len(points)], strict=True):
         for part in _split(points[first:last]):
