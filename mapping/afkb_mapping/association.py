@@ -12,9 +12,12 @@ from afkb.flow import Detection, View
 from afkb_mapping.footprint import Footprint
 from afkb_mapping.tracks import SURFACE_CELL_M, THING_CELL_M, ObservedTrack
 
-SURFACE_REACH_M = 0.08
-"""Parts of one surface lie at most this far apart: two cells, or what a pose may be off."""
-SURFACE_HEIGHT_M = 0.03
+SURFACE_OVERLAP = 0.05
+"""Two views of one surface share at least this part of the smaller one's cells; neighbouring
+pieces of furniture share none, however small the gap."""
+SURFACE_GAP_M = 0.08
+"""Where the image edge cuts a surface, its other part may begin this far on."""
+SURFACE_HEIGHT_M = 0.015
 """Parts of one surface agree in height within this and twice the measurement's deviation."""
 THING_REACH_M = 0.06
 THING_HEIGHT_M = 0.06
@@ -61,12 +64,14 @@ class Association:
         return track
 
     def _birth(self, detection: Detection) -> ObservedTrack:
-        surface = _is_surface(detection)
+        kind = "thing"
+        if _is_surface(detection):
+            kind = "floor" if _is_floor(detection) else "surface"
         track = ObservedTrack(
-            id=self._new_id("surface" if surface else "thing"),
-            is_surface=surface,
-            footprint=Footprint(SURFACE_CELL_M if surface else THING_CELL_M),
-            is_floor=_is_floor(detection),
+            id=self._new_id(kind),
+            is_surface=kind != "thing",
+            footprint=Footprint(THING_CELL_M if kind == "thing" else SURFACE_CELL_M),
+            is_floor=kind == "floor",
         )
         self.tracks.append(track)
         self.births += 1
@@ -75,16 +80,12 @@ class Association:
     def _surface_track(self, detection: Detection) -> ObservedTrack | None:
         if _is_floor(detection):
             return next((t for t in self.tracks if t.is_floor), None)
-        deviation = float(np.sqrt(max(detection.covariance_xyz[2, 2], 0.0)))
         near = []
         for track in self.tracks:
-            if not track.is_surface or track.is_floor:
-                continue
-            if abs(track.top.value - detection.position_xyz[2]) > SURFACE_HEIGHT_M + 2 * deviation:
-                continue
-            share = track.footprint.share_within(detection.footprint_xy, SURFACE_REACH_M)
-            if share > 0:
-                near.append((share, track))
+            if track.is_surface and not track.is_floor and _same_height(track, detection):
+                share = track.footprint.overlap(detection.footprint_xy)
+                if share >= SURFACE_OVERLAP or _continues(track, detection):
+                    near.append((share, track))
         near.sort(key=lambda pair: (-pair[0], pair[1].id))
         return self._merged([track for _, track in near])
 
@@ -121,20 +122,44 @@ class Association:
         return found
 
     def merge_doubles(self) -> None:
-        """Merge things that views from different sides have grown into the same place."""
-        things = [t for t in self.tracks if not t.is_surface]
-        for i, first in enumerate(things):
-            for second in things[i + 1 :]:
-                if first in self.tracks and second in self.tracks and _same_thing(first, second):
-                    self._absorb(first, second)
+        """Merge tracks that views from different sides have grown into the same place."""
+        for same in (_same_thing, _same_surface):
+            tracks = [t for t in self.tracks if t.is_surface is (same is _same_surface)]
+            for i, first in enumerate(tracks):
+                for second in tracks[i + 1 :]:
+                    if first in self.tracks and second in self.tracks and same(first, second):
+                        self._absorb(first, second)
 
 
 def _is_surface(detection: Detection) -> bool:
-    return detection.affords("SupportAbility")
+    """Whether supporting is what it is detected by; a box affords it too, but is a thing."""
+    best = max(detection.affordances, key=lambda name: detection.affordances[name])
+    return best == "SupportAbility"
 
 
 def _is_floor(detection: Detection) -> bool:
     return bool(detection.measures.get("is_floor", 0.0))
+
+
+def _same_height(track: ObservedTrack, detection: Detection) -> bool:
+    deviation = float(np.sqrt(max(detection.covariance_xyz[2, 2], 0.0)))
+    apart = abs(track.top.value - detection.position_xyz[2])
+    return apart <= SURFACE_HEIGHT_M + 2 * deviation
+
+
+def _continues(track: ObservedTrack, detection: Detection) -> bool:
+    """Whether a surface that the image edge cuts goes on where the track is."""
+    return detection.cut_by_image and (
+        track.footprint.share_within(detection.footprint_xy, SURFACE_GAP_M) > 0
+    )
+
+
+def _same_surface(first: ObservedTrack, second: ObservedTrack) -> bool:
+    if first.is_floor or second.is_floor:
+        return False
+    if abs(first.top.value - second.top.value) > SURFACE_HEIGHT_M:
+        return False
+    return first.footprint.overlap(second.footprint.points()) >= SURFACE_OVERLAP
 
 
 def _overlap_in_height(track: ObservedTrack, bottom: float, top: float) -> bool:

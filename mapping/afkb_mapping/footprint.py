@@ -9,9 +9,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-SEEN_SHARE = 0.1
+SEEN_SHARE = 0.2
 """A cell belongs to the outline if it was seen this often, relative to the well-seen cells:
 stray points of single frames lie below, whatever the number of frames."""
+
+
+TRIMMED_SHARE = 0.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,6 +100,14 @@ class Footprint:
         i, j = cells[inside].T
         return float(near[i, j].sum() / len(cells))
 
+    def overlap(self, points_xy: NDArray[np.float64]) -> float:
+        """Shared cells, as a part of the smaller one's cells."""
+        shared = self.share_within(points_xy, 0.0)
+        if not shared:
+            return 0.0
+        count = len(self._cells(points_xy))
+        return shared * count / min(count, int(self._within(0).sum()))
+
     def _within(self, reach: int) -> NDArray[np.uint8]:
         """Mask of the cells within `reach` cells, with that margin; kept until the next view."""
         if reach not in self._near:
@@ -113,31 +124,53 @@ class Footprint:
         return cells
 
     def outline(self) -> Outline:
-        """Smallest rectangle and polygon around it, gaps up to a few cells closed."""
+        """Rectangle and polygon around it, gaps up to a few cells closed.
+
+        The rectangle holds the middle 96 % of the evidence along each of its axes, stretched to
+        the whole: what single frames add at an edge does not move it.
+        """
         margin = 4
+        mask = self.mask(margin)
         closed = cv2.morphologyEx(
-            self.mask(margin), cv2.MORPH_CLOSE, np.ones((2 * margin - 1,) * 2, dtype=np.uint8)
+            mask, cv2.MORPH_CLOSE, np.ones((2 * margin - 1,) * 2, dtype=np.uint8)
         )
         contours, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         if not contours:
             raise ValueError("an empty footprint has no outline")
-        # cv2 calls our second index x; swap back, and grow half a cell to the cells' borders.
+        # cv2 calls our second index x; swap back.
         largest = max(contours, key=cv2.contourArea)[:, 0, ::-1]
         corners = (largest - margin + self._low + 0.5) * self.cell_m
-        return _outline(corners, self.cell_m, float(closed.sum()) * self.cell_m**2)
+        center, size, yaw = self._rectangle(corners)
+        simple = cv2.approxPolyDP(corners.astype(np.float32)[:, None], 0.75 * self.cell_m, True)
+        return Outline(
+            center, size, yaw, simple[:, 0].astype(np.float64), closed.sum() * self.cell_m**2
+        )
+
+    def _rectangle(
+        self, corners: NDArray[np.float64]
+    ) -> tuple[tuple[float, float], tuple[float, float], float]:
+        """Centre, size (longer side first) and yaw, m and rad."""
+        (_, _), (width, height), angle = cv2.minAreaRect(corners.astype(np.float32))
+        yaw = math.radians(angle) + (math.pi / 2 if width < height else 0.0)
+        axes = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])
+        mask = self.mask().astype(bool)
+        hits = self._hits[mask].astype(np.float64)
+        weights = np.minimum(hits, np.median(hits))
+        along = ((np.argwhere(mask) + self._low + 0.5) * self.cell_m) @ axes.T
+        low, high = np.array([_trimmed(values, weights) for values in along.T]).T
+        size = (high - low) / (1 - 2 * TRIMMED_SHARE) + self.cell_m
+        center = (low + high) / 2 @ axes
+        if size[1] > size[0]:
+            size, yaw = size[::-1], yaw + math.pi / 2
+        yaw = (yaw + math.pi / 2) % math.pi - math.pi / 2
+        return (float(center[0]), float(center[1])), (float(size[0]), float(size[1])), yaw
 
 
-def _outline(corners: NDArray[np.float64], cell_m: float, area_m2: float) -> Outline:
-    (cx, cy), (width, height), angle = cv2.minAreaRect(corners.astype(np.float32))
-    yaw = math.radians(angle)
-    if width < height:
-        width, height, yaw = height, width, yaw + math.pi / 2
-    yaw = (yaw + math.pi / 2) % math.pi - math.pi / 2
-    simple = cv2.approxPolyDP(corners.astype(np.float32)[:, None], 0.75 * cell_m, True)[:, 0]
-    return Outline(
-        (float(cx), float(cy)),
-        (float(width) + cell_m, float(height) + cell_m),
-        yaw,
-        simple.astype(np.float64),
-        area_m2,
-    )
+def _trimmed(
+    values: NDArray[np.float64], weights: NDArray[np.float64]
+) -> tuple[float, float]:
+    """Values that cut off `TRIMMED_SHARE` of the weight at either end."""
+    order = np.argsort(values, kind="stable")
+    share = np.cumsum(weights[order]) / weights.sum()
+    low, high = np.searchsorted(share, [TRIMMED_SHARE, 1 - TRIMMED_SHARE])
+    return float(values[order][low]), float(values[order][min(high, len(values) - 1)])

@@ -12,6 +12,8 @@ from afkb.flow import View
 from afkb_mapping.geometry import back_project, transform
 
 SAMPLED_VIEWS = 40
+SAMPLED_VIEWS_UPRIGHT = 6
+"""Views to look for the floor in; few suffice where up is known."""
 PIXEL_STEP = 6
 """Normals come from points this many pixels apart: far enough for a Kinect's depth steps."""
 UPRIGHT_LIMIT = np.deg2rad(50)

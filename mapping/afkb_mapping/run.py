@@ -24,7 +24,7 @@ from afkb.flow import Detection, Hypothesis, SkippedFrame, TopologicalMap, View
 from afkb.plugins.host import PluginHost
 from afkb.plugins.protocols import Detector, Mapper, Predictor, Source
 from afkb.store import check_out, write_map
-from afkb_mapping.levelling import SAMPLED_VIEWS, level
+from afkb_mapping.levelling import SAMPLED_VIEWS, SAMPLED_VIEWS_UPRIGHT, level
 from afkb_mapping.registration import ScanRegistration
 
 RECORDED_PACKAGES = ("numpy", "numba", "open3d-cpu", "opencv-python-headless", "pgmpy", "rosbags")
@@ -160,7 +160,8 @@ def _frame_count(source: Source, settings: Settings) -> int:
 
 def _sample(source: Source, settings: Settings) -> list[View]:
     """Views spread over the recording, the first usable one first."""
-    stride = settings.stride * max(1, _frame_count(source, settings) // SAMPLED_VIEWS)
+    wanted = SAMPLED_VIEWS if not source.gravity_aligned else SAMPLED_VIEWS_UPRIGHT
+    stride = settings.stride * max(1, _frame_count(source, settings) // wanted)
     first = next(
         (f for f in source.views(settings.start, settings.stop, settings.stride)
          if isinstance(f, View)),

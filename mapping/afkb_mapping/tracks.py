@@ -29,7 +29,7 @@ class WeightedMean:
 
     def add(self, measured: float, variance: float) -> None:
         """Take in a measurement with its variance."""
-        w = 1.0 / max(variance, 1e-8)
+        w = 1.0 / max(variance, 1e-12)
         self.value = (self.value * self.weight + measured * w) / (self.weight + w)
         self.weight += w
 
@@ -116,7 +116,8 @@ class ObservedTrack:
         """Take in one detection of it."""
         self.footprint.add(detection.footprint_xy)
         top = detection.position_xyz[2] if self.is_surface else detection.box.top
-        variance = float(detection.covariance_xyz[2, 2]) or 1e-4
+        # A patch of a few pixels says less about the height of a table than its whole top does.
+        variance = max(float(detection.covariance_xyz[2, 2]), 1e-6) / detection.n_pixels
         self.top.add(float(top), variance)
         self.bottom.add(detection.measures.get("support_height", detection.box.bottom), variance)
         strength = max(detection.affordances.values())
