@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
-
-from rdflib import Graph, Literal, URIRef
-from rdflib.namespace import XSD
 
 from afkb.knowledge import AFN, KnowledgeBase, bundled_ontology
 
@@ -17,30 +15,32 @@ _HEAD = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
-def afn(name: str) -> URIRef:
-    return URIRef(AFN + name)
-
-
 class Copy:
-    """A copy of the bundled ontology to change statement by statement."""
+    """A copy of the bundled ontology to change statement by statement, as in a text editor."""
 
     def __init__(self) -> None:
-        self.graph = Graph().parse(bundled_ontology(), format="xml")
+        self.text = bundled_ontology().read_text(encoding="utf-8")
 
     def set(self, subject: str, prop: str, value: float) -> Copy:
-        assert (afn(subject), afn(prop), None) in self.graph
-        self.graph.set((afn(subject), afn(prop), Literal(value, datatype=XSD.double)))
+        block = self._block(subject)
+        changed, count = re.subn(rf"(<afn:{prop}[^>]*>)[^<]*", rf"\g<1>{value}", block)
+        assert count == 1
+        self.text = self.text.replace(block, changed)
         return self
 
     def delete(self, subject: str) -> Copy:
-        assert (afn(subject), None, None) in self.graph
-        self.graph.remove((afn(subject), None, None))
+        self.text = self.text.replace(self._block(subject), "")
         return self
 
     def load(self, folder: Path) -> KnowledgeBase:
         path = folder / "changed.owl"
-        self.graph.serialize(path, format="xml")
+        path.write_text(self.text, encoding="utf-8")
         return KnowledgeBase(path)
+
+    def _block(self, subject: str) -> str:
+        start = self.text.index(f'  <rdf:Description rdf:about="{AFN}{subject}">')
+        end = "\n  </rdf:Description>\n"
+        return self.text[start : self.text.index(end, start) + len(end)]
 
 
 def extension(folder: Path, body: str, name: str = "home.owl") -> Path:
