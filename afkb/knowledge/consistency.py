@@ -6,7 +6,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from afkb.knowledge.facts import Facts
-from afkb.knowledge.names import SOMETHING_ELSE, UNKNOWN_ROOM
+from afkb.knowledge.names import SOMETHING_ELSE, UNKNOWN_ROOM, fragment
 
 if TYPE_CHECKING:
     from afkb.knowledge.content import Content
@@ -45,8 +45,8 @@ def _references(content: Content, facts: Facts) -> Iterator[_Reference]:
         yield feature.iri, "feature", feature.broader, features
     for category in content.categories.values():
         yield category.iri, "scale", category.scale, scales
-        for name in category.afbits:
-            yield _afbit(facts, category.iri, name), "feature", name, features
+    for afbit in facts.of_type("Afbit"):
+        yield afbit, "feature", fragment(facts.text(afbit, "ofFeature")), features
     for dual in content.duals:
         yield dual.iri, "feature", dual.evidence, features
         yield dual.iri, "feature", dual.predicted, features
@@ -63,19 +63,6 @@ def _references(content: Content, facts: Facts) -> Iterator[_Reference]:
     for room in content.rooms.values():
         for name in room.expected_counts:
             yield room.iri, "evidence class", name, content.evidence_classes
-
-
-def _afbit(facts: Facts, category: str, feature: str) -> str:
-    """The afbit of a category and feature, so that the message names the file that states it."""
-    return next(
-        (
-            iri
-            for iri in facts.of_type("Afbit")
-            if facts.one(iri, "ofCategory") == category
-            and str(facts.one(iri, "ofFeature")).endswith(feature)
-        ),
-        category,
-    )
 
 
 def _require(
