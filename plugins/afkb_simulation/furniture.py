@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from afkb_simulation.built import Built, Size, Support
-from afkb_simulation.meshes import Mesh, box, lathe, merge, open_box
+from afkb_simulation.meshes import Mesh, box, lathe, merge, open_box, rounded_bar
 from afkb_simulation.vessels import hollow_profile
 
 _BOARD = 0.02
@@ -36,22 +36,22 @@ def chair(size: Size, parameters: Mapping[str, float]) -> Built:
     x, y, z, seat = size[0] / 2, size[1] / 2, size[2], parameters["seat_m"]
     parts = [
         box((-x, -y, seat - 0.04), (x, y, seat)),
-        box((-x, -y, seat), (-x + 0.04, y, z)),
+        rounded_bar((-x, -y, seat), (-x + 0.04, y, z), along=1),
         *_legs(-x, -y, x, y, seat - 0.04),
     ]
     return Built(merge(parts), seat, (Support(seat, -x + 0.04, -y, x, y),))
 
 
 def couch(size: Size, parameters: Mapping[str, float]) -> Built:
-    """A deep seat between two arms and a back."""
+    """A deep seat between padded arms and a padded back."""
     x, y, z, seat = size[0] / 2, size[1] / 2, size[2], parameters["seat_m"]
     back, arm, arm_top = 0.25, 0.18, min(size[2], seat + 0.2)
     parts = [
         *_legs(-x, -y, x, y, 0.05),
         box((-x, -y, 0.05), (x, y, seat)),
-        box((-x, -y, seat), (-x + back, y, z)),
-        box((-x + back, -y, seat), (x, -y + arm, arm_top)),
-        box((-x + back, y - arm, seat), (x, y, arm_top)),
+        rounded_bar((-x, -y, seat), (-x + back, y, z), along=1),
+        rounded_bar((-x + back, -y, seat), (x, -y + arm, arm_top), along=0),
+        rounded_bar((-x + back, y - arm, seat), (x, y, arm_top), along=0),
     ]
     return Built(merge(parts), seat, (Support(seat, -x + back, -y + arm, x, y - arm),))
 
@@ -59,11 +59,12 @@ def couch(size: Size, parameters: Mapping[str, float]) -> Built:
 def bed(size: Size, parameters: Mapping[str, float]) -> Built:
     """A frame with a mattress, and a headboard at the rear."""
     x, y, z = size[0] / 2, size[1] / 2, size[2]
+    headboard = max(z, parameters["headboard_m"])
     parts = [
         *_legs(-x, -y, x, y, 0.08),
         box((-x, -y, 0.08), (x, y, z - 0.2)),
         box((-x + 0.05, -y + 0.02, z - 0.2), (x - 0.02, y - 0.02, z)),
-        box((-x, -y, z - 0.2), (-x + 0.05, y, max(z, parameters["headboard_m"]))),
+        rounded_bar((-x, -y, z - 0.2), (-x + 0.05, y, headboard), along=1),
     ]
     return Built(merge(parts), z, (Support(z, -x + 0.05, -y + 0.02, x - 0.02, y - 0.02),))
 

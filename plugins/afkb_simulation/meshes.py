@@ -72,6 +72,31 @@ def open_box(lower: Vec3, upper: Vec3, wall: float, floor: float) -> Mesh:
     )
 
 
+def rounded_bar(lower: Vec3, upper: Vec3, along: int) -> Mesh:
+    """A box whose upper side is a half round along axis 0 (x) or 1 (y), as padding is; m."""
+    across = 1 - along
+    w0, w1, z0, z1 = lower[across], upper[across], lower[2], upper[2]
+    middle, half = (w0 + w1) / 2, (w1 - w0) / 2
+    rise = min(half, z1 - z0)
+    arc = np.linspace(0, np.pi, _SEGMENTS // 2 + 1)
+    w = np.concatenate([[w0, w1], middle + half * np.cos(arc)])
+    z = np.concatenate([[z0, z0], z1 - rise + rise * np.sin(arc)])
+    ends = []
+    for at in (lower[along], upper[along]):
+        columns = (np.full(w.size, at), w) if along == 0 else (w, np.full(w.size, at))
+        ends.append(np.stack([*columns, z], axis=-1))
+    return Mesh(np.concatenate(ends), _prism_faces(w.size))
+
+
+def _prism_faces(n: int) -> NDArray[np.uint32]:
+    """Triangles of a convex prism: one end's n corners, then the other's."""
+    i = np.arange(n)
+    j = (i + 1) % n
+    sides = [np.stack([i, j, j + n], axis=-1), np.stack([i, j + n, i + n], axis=-1)]
+    fan = np.stack([np.zeros(n - 2, dtype=np.int64), i[1:-1], i[2:]], axis=-1)
+    return np.concatenate([*sides, fan, fan + n]).astype(np.uint32)
+
+
 def lathe(profile_rz: Sequence[tuple[float, float]], stretch_y: float = 1.0) -> Mesh:
     """Surface of revolution about z through (radius, height) points, m; y may be stretched."""
     rz = np.array(profile_rz, dtype=np.float64)
@@ -87,7 +112,9 @@ def lathe(profile_rz: Sequence[tuple[float, float]], stretch_y: float = 1.0) -> 
     return Mesh(np.stack([x, y, z], axis=-1).reshape(-1, 3), triangles)
 
 
-def sphere(radius: float) -> Mesh:
-    """A ball that lies on z = 0, m."""
+def ellipsoid(size: Vec3) -> Mesh:
+    """A ball or cushion that lies on z = 0, m."""
     polar = np.linspace(0, np.pi, _SEGMENTS // 2 + 1)
-    return lathe([(radius * float(np.sin(a)), radius * (1 - float(np.cos(a)))) for a in polar])
+    r, h = size[0] / 2, size[2] / 2
+    profile = [(r * float(np.sin(a)), h * (1 - float(np.cos(a)))) for a in polar]
+    return lathe(profile, size[1] / size[0])

@@ -50,6 +50,7 @@ SHAPES: Mapping[str, Shape] = MappingProxyType(
         "can": Shape(vessels.cylinder, (0.067, 0.067, 0.12)),
         "canister": Shape(vessels.cylinder, (0.12, 0.12, 0.22)),
         "ball": Shape(vessels.ball, (0.2, 0.2, 0.2)),
+        "cushion": Shape(vessels.ball, (0.4, 0.6, 0.14)),
         "open_box": Shape(vessels.open_carton, (0.4, 0.3, 0.25), _HOLLOW),
         "tray": Shape(vessels.open_carton, (0.3, 0.45, 0.05), _HOLLOW),
         "box": Shape(furniture.solid, (0.2, 0.3, 0.15)),

@@ -65,20 +65,23 @@ class Simulation:
             T_base_laser=_T_base_laser(laser) if laser else None,
         )
 
+    def T_world_camera(self, index: int) -> NDArray[np.float64]:
+        """True pose of the camera (optical frame); `SourceError` where the robot has none."""
+        if self.T_base_camera is None:
+            raise SourceError(f"world {self.world.name!r}: its robot has no camera; give it one")
+        return self.T_world_base[index] @ self.T_base_camera
+
     def _camera_hits(self, index: int) -> Hits:
         """(H, W) exact depth and which mesh each pixel shows: 0 the building, then the things."""
-        if self.camera is None or self.T_base_camera is None:
-            raise SourceError(f"world {self.world.name!r}: its robot has no camera; give it one")
-        T = self.T_world_base[index] @ self.T_base_camera
+        T = self.T_world_camera(index)
         hits = self._caster(index).cast(T[:3, 3], turned(T, self._camera_rays))
         return Hits(hits.distances, hits.cosines, self._mesh_numbers(index)[hits.meshes])
 
     def heights(self, index: int) -> NDArray[np.float32]:
         """(H, W) height above the floor of what each pixel of a frame shows, m."""
-        hits = self.camera_hits(index)
-        assert self.T_base_camera is not None
-        T = self.T_world_base[index] @ self.T_base_camera
-        return np.float32(T[2, 3]) + turned(T, self._camera_rays)[..., 2] * hits.distances
+        T = self.T_world_camera(index)
+        along = turned(T, self._camera_rays)[..., 2]
+        return np.float32(T[2, 3]) + along * self.camera_hits(index).distances
 
     def room_of(self, index: int) -> str | None:
         """Name of the room the robot is in, None in a doorway."""

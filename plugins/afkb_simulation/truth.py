@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import OrientedBox
+from afkb.flow import OrientedBox, PinholeCamera
 from afkb_simulation.placing import Placed
 from afkb_simulation.polygons import XY, signed_area
 from afkb_simulation.reading import read_world, world_path
@@ -80,6 +80,15 @@ class WorldTruth:
     waypoints: Mapping[str, TrueWaypoint]
     frame_rooms: tuple[str | None, ...]
     _simulation: Simulation
+
+    @property
+    def camera(self) -> PinholeCamera | None:
+        """The depth camera's intrinsics."""
+        return self._simulation.camera
+
+    def T_world_camera(self, index: int) -> NDArray[np.float64]:
+        """True pose (4x4) of the camera's optical frame."""
+        return self._simulation.T_world_camera(index)
 
     def exact_depth(self, index: int) -> NDArray[np.float32]:
         """(H, W) depth of a frame without noise, m; inf where there is nothing."""

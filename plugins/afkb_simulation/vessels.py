@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from afkb_simulation.built import Built, Size, Support
-from afkb_simulation.meshes import Mesh, box, lathe, merge, open_box, sphere
+from afkb_simulation.meshes import Mesh, box, ellipsoid, lathe, merge, open_box
 
 Profile = list[tuple[float, float]]
 
@@ -71,8 +71,8 @@ def bottle(size: Size, _: Mapping[str, float]) -> Built:
 
 
 def ball(size: Size, _: Mapping[str, float]) -> Built:
-    """A sphere as high as it is wide along x."""
-    return Built(sphere(size[0] / 2), size[0])
+    """A ball or, flattened, a cushion."""
+    return Built(ellipsoid(size), size[2])
 
 
 def open_carton(size: Size, parameters: Mapping[str, float]) -> Built:
