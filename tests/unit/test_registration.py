@@ -1,0 +1,128 @@
+"""Placing views: odometry corrected by laser scans."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import laser_samples as samples
+from afkb.flow import LaserScan, View
+from afkb_mapping.geometry import T_from_xy_yaw, wrap_angle, yaw_of
+from afkb_mapping.registration import ScanRegistration
+
+PATH = [(1 + 0.3 * i, 2.5, 0.1 * i) for i in range(10)]
+PATH += [(3.7 + 0.4 * i, 3.95, 0.9 - 0.2 * i) for i in range(1, 9)]
+
+
+def drifting(path, rng):
+    """Odometry of a path whose steps err by a few percent and degrees, starting anywhere."""
+    odom = [T_from_xy_yaw(3, -2, 1.0)]
+    for a, b in pairwise(path):
+        step = np.linalg.inv(T_from_xy_yaw(*a)) @ T_from_xy_yaw(*b)
+        slip = T_from_xy_yaw(*rng.normal(0, [0.03, 0.03, 0.04]))
+        odom.append(odom[-1] @ step @ slip)
+    return [(T[0, 3], T[1, 3], yaw_of(T)) for T in odom]
+
+
+def errors(placed, path):
+    start = np.linalg.inv(T_from_xy_yaw(*path[0]))
+    truth = [start @ T_from_xy_yaw(*p) for p in path]
+    shift = [np.linalg.norm((p.T_map_base - t)[:2, 3]) for p, t in zip(placed, truth, strict=True)]
+    turn = [
+        abs(wrap_angle(yaw_of(p.T_map_base) - yaw_of(t)))
+        for p, t in zip(placed, truth, strict=True)
+    ]
+    return np.array(shift), np.array(turn)
+
+
+def place_all(views):
+    registration = ScanRegistration(np.linalg.inv(views[0].T_odom_base))
+    return [registration.place(v) for v in views]
+
+
+def test_drifting_odometry_is_corrected_to_centimetres():
+    rng = np.random.default_rng(1)
+    odom = drifting(PATH, rng)
+    views = [
+        samples.view(samples.FLAT, p, o, i, rng)
+        for i, (p, o) in enumerate(zip(PATH, odom, strict=True))
+    ]
+    placed = place_all(views)
+    shift, turn = errors(placed, PATH)
+    assert all(p.matched for p in placed)
+    assert shift.max() < 0.03
+    assert math.degrees(turn.max()) < 0.5
+
+
+def test_covers_a_slip_that_icp_alone_would_not_reach():
+    rng = np.random.default_rng(2)
+    path = [(2, 2, 0.0), (2.3, 2, 0.0), (2.6, 2, 0.0), (2.9, 2, 0.0)]
+    odom = [(0, 0, 0.0), (0.3, 0, 0.0), (0.9, 0.2, 0.25), (1.2, 0.28, 0.25)]
+    views = [
+        samples.view(samples.FLAT, p, o, i, rng)
+        for i, (p, o) in enumerate(zip(path, odom, strict=True))
+    ]
+    shift, turn = errors(place_all(views), path)
+    assert shift.max() < 0.03
+    assert math.degrees(turn.max()) < 0.5
+
+
+def test_along_a_corridor_odometry_rules_and_its_doubt_is_told():
+    rng = np.random.default_rng(3)
+    path = [(0.5 * i, 0.0, 0.0) for i in range(6)]
+    odom = [(0.5 * i, 0.01 * i * i, 0.01 * i) for i in range(6)]
+    views = [
+        samples.view(samples.CORRIDOR, p, o, i, rng)
+        for i, (p, o) in enumerate(zip(path, odom, strict=True))
+    ]
+    last = place_all(views)[-1]
+    assert last.T_map_base[0, 3] == pytest.approx(2.5, abs=0.15)
+    assert last.T_map_base[1, 3] == pytest.approx(0.0, abs=0.02)
+    assert last.covariance[0, 0] > 20 * last.covariance[1, 1]
+
+
+def test_blind_laser_leaves_the_pose_to_odometry():
+    first = samples.view(samples.FLAT, (2, 2, 0), (0, 0, 0))
+    registration = ScanRegistration(np.eye(4))
+    registration.place(first)
+    blind = LaserScan(np.full(360, np.inf, np.float32), -math.pi, math.pi / 180, 0.05, 12.0)
+    pose = T_from_xy_yaw(0.4, 0.1, 0.2)
+    placed = registration.place(View(1, 1.0, pose, scan=blind, T_base_laser=np.eye(4)))
+    assert not placed.matched
+    assert np.allclose(placed.T_map_base, pose)
+    assert placed.covariance[0, 0] > 0
+
+
+def test_height_and_tilt_of_levelled_odometry_stay():
+    tilt = np.eye(4)
+    tilt[1:3, 1:3] = [[math.cos(0.05), -math.sin(0.05)], [math.sin(0.05), math.cos(0.05)]]
+    tilt[2, 3] = 0.12
+    registration = ScanRegistration(np.eye(4))
+    registration.place(samples.view(samples.FLAT, (2, 2, 0), (0, 0, 0)))
+    moved = samples.view(samples.FLAT, (2.3, 2, 0), (0.35, 0.05, 0.03), 1)
+    moved = View(1, 1.0, moved.T_odom_base @ tilt, scan=moved.scan, T_base_laser=moved.T_base_laser)
+    T = registration.place(moved).T_map_base
+    assert T[2, 3] == pytest.approx(0.12)
+    assert T[2, :3] == pytest.approx(tilt[2, :3], abs=1e-9)
+
+
+def test_furniture_that_moved_does_not_pull_the_pose():
+    rng = np.random.default_rng(4)
+    changed = samples.FLAT.copy()
+    changed[6:, :, 0] += 0.15
+    views = [samples.view(samples.FLAT, (2, 2, 0), (0, 0, 0), 0, rng)]
+    views += [samples.view(changed, (2, 2, 0), (0, 0, 0), i, rng) for i in range(1, 4)]
+    shift, _ = errors(place_all(views), [(2, 2, 0)] * 4)
+    assert shift.max() < 0.02
+
+
+def test_the_same_views_are_placed_alike_twice():
+    rng = np.random.default_rng(5)
+    odom = drifting(PATH, rng)
+    views = [
+        samples.view(samples.FLAT, p, o, i, rng)
+        for i, (p, o) in enumerate(zip(PATH, odom, strict=True))
+    ]
+    once, again = place_all(views), place_all(views)
+    assert all(np.array_equal(a.T_map_base, b.T_map_base) for a, b in zip(once, again, strict=True))
