@@ -90,7 +90,7 @@ def _provenance(scribe: Scribe, node: NamedNode, entity: Entity) -> None:
     scribe.say(node, "prov:wasGeneratedBy", *_makers(scribe, entity.generated_by))
     scribe.say(node, "prov:wasDerivedFrom", *(_axiom(scribe, a) for a in entity.axioms))
     scribe.say(node, "prov:wasDerivedFrom", *map(scribe.node, entity.predicted_from))
-    scribe.say(node, "afn:evidence", *entity.evidence)
+    scribe.say(node, "afn:sighting", *entity.evidence)
 
 
 def _makers(scribe: Scribe, names: tuple[str, ...]) -> list[NamedNode]:

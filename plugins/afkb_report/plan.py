@@ -12,8 +12,10 @@ from afkb_report import drawing as d
 from afkb_report.png import grid_image
 from afkb_report.words import best, describe, role
 
-LAYERS = ("grid", "rooms", "bounds", "path", "edges", "things", "labels")
+LAYERS = ("grid", "rooms", "bounds", "path", "edges", "things", "labels", "ids")
 _MARGIN_M = 0.5
+# Lower than this lies the floor, whose outline must not tint all that stands on it.
+_GROUND_M = 0.05
 # A row of the trajectory is the stamp and then T_map_base, row by row.
 _STAMP_AND_POSE = 17
 _POSE_XY = (4, 8)
@@ -31,6 +33,7 @@ def plan(topological_map: TopologicalMap) -> str:
         "edges": _edges(topological_map),
         "things": _things(topological_map, radius),
         "labels": _labels(topological_map, radius),
+        "ids": _ids(topological_map, radius),
     }
     view = f"{d.number(west)} {d.number(-north)} {d.number(east - west)} {d.number(north - south)}"
     size = f"--label:{d.number(1.6 * radius)}px"
@@ -166,19 +169,24 @@ def _outline(entity: Entity) -> str:
     corners: d.Points = d.box_corners(x, y, entity.size_xyz[0], entity.size_xyz[1], entity.yaw)
     if entity.polygon_xy is not None and len(entity.polygon_xy) > 2:
         corners = entity.polygon_xy
-    open_end = "" if entity.extent_known else " extent-unknown"
-    return d.path(f"outline {_classes(entity)}{open_end}", corners, True, describe(entity))
+    kind = f"outline {_classes(entity)}"
+    kind += "" if entity.extent_known else " extent-unknown"
+    kind += " ground" if entity.position_xyz[2] < _GROUND_M else ""
+    return d.path(kind, corners, True, describe(entity))
 
 
 def _labels(m: TopologicalMap, radius: float) -> Iterator[str]:
     for room in m.rooms:
         name, p = best(room.belief, 1)[0] if room.belief else ("", 0.0)
         yield d.text("room-label", room.x, room.y, f"{name} {p:.2f}")
+    for place in m.places:
+        yield d.text("label", place.x, place.y + 1.3 * radius, place.id)
+
+
+def _ids(m: TopologicalMap, radius: float) -> Iterator[str]:
     for entity in m.entities:
         x, y, _ = entity.position_xyz
         yield d.text("label", x, y + 1.3 * radius, entity.id)
-    for place in m.places:
-        yield d.text("label", place.x, place.y + 1.3 * radius, place.id)
 
 
 def _scale_bar(west: float, south: float) -> str:

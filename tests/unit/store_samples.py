@@ -80,7 +80,7 @@ def sample_entities() -> tuple[Entity, ...]:
     )
     doubtful = entity(
         "n10",
-        position_xyz=(4.0, 1.0, 0.95),
+        position_xyz=(4.0, 1.0, 0.45),
         affordances={"SupportAbility": 0.4},
         extent_known=False,
         room=None,

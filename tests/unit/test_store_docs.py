@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from afkb.knowledge import KnowledgeBase
+from afkb.store import StoredMap, load, query, write_map
+from afkb.store.named import named_queries
+from afkb.store.shapes import info_json, node_json, rooms_json
+from store_samples import Names, sample_map
+
+DOCS = Path(__file__).parents[2] / "docs"
+COOKBOOK = (DOCS / "sparql-cookbook.md").read_text(encoding="utf-8")
+REFERENCE = (DOCS / "reference.md").read_text(encoding="utf-8")
+
+
+def blocks(text: str, language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory) -> StoredMap:
+    folder = tmp_path_factory.mktemp("maps") / "kitchen"
+    return load(write_map(folder, sample_map(), {}, [], Names()))
+
+
+@pytest.mark.parametrize("sparql", blocks(COOKBOOK, "sparql"))
+def test_every_question_of_the_cookbook_has_an_answer(stored: StoredMap, sparql: str) -> None:
+    answer = query([stored], sparql, KnowledgeBase().files)
+    assert answer.truth or answer.rows
+
+
+def test_the_cookbook_lists_the_library() -> None:
+    for known in named_queries():
+        assert f"`@{known.name}`" in COOKBOOK
+
+
+def test_the_python_of_the_cookbook_runs(
+    stored: StoredMap, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(stored.folder.parent)
+    for code in blocks(COOKBOOK, "python"):
+        exec(compile(code, "sparql-cookbook.md", "exec"), {})
+
+
+def test_the_plugin_command_of_the_reference_runs(stored: StoredMap) -> None:
+    from afkb.cli.app import build_cli
+    from afkb.plugins.host import PluginHost
+
+    names: dict[str, object] = {"__name__": "census"}
+    exec(compile(blocks(REFERENCE, "python")[0], "reference.md", "exec"), names)
+    host = PluginHost()
+    host.register(type("Plugin", (), {"afkb_commands": staticmethod(names["afkb_commands"])})())
+    done = CliRunner().invoke(build_cli(host), ["census", str(stored.folder)])
+    assert json.loads(done.stdout)["kinds"]["Room"] == 2
+
+
+def test_the_reference_lists_every_term_and_key(stored: StoredMap) -> None:
+    scene = (stored.folder / "scene.ttl").read_text(encoding="utf-8")
+    used = set(re.findall(r"\tafn:(\w+) ", scene))
+    used -= {"count", "formatVersion", "viewIndex", "probability"}
+    missing = {term for term in used if f"`afn:{term}`" not in REFERENCE}
+    assert not missing
+    keys = set(info_json(stored)) | set(rooms_json(stored)[0])
+    keys |= set(node_json(stored, stored.instances("ObservedEntity")[0], "ObservedEntity"))
+    assert not {key for key in keys if f'"{key}"' not in REFERENCE and f"`{key}`" not in REFERENCE}
