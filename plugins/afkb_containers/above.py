@@ -182,7 +182,7 @@ def label_things(
     low_m: float,
     high_m: float,
 ) -> tuple[NDArray[np.int16], NDArray[np.float32]]:
-    """Support, from 1, that each pixel's point stands on: (H, W); 0 none, -1 on a large support.
+    """Support, from 1, that each pixel's point stands on: (H, W); 0 none, -1 the support itself.
 
     With it, how high the point is over that support, m: (H, W) float32.
 
@@ -217,7 +217,8 @@ def label_things(
                     out[v, u] = k + 1
                     overs[v, u] = over
                     break
-                if over > -margin and large[k]:
+                if over > -margin:
                     out[v, u] = -1
-                    break
+                    if large[k]:
+                        break
     return out, overs

@@ -117,10 +117,13 @@ def surroundings(
     mine: NDArray[np.int32],
     name: int,
     labels: NDArray[np.int16],
+    overs_m: NDArray[np.float32],
+    core_m: float,
 ) -> tuple[float, float, float, float]:
     """What a thing's outline borders on: shares of attached, behind it, before it, missing.
 
     Attached: the surface goes on, off the support, so that this is a part of something larger.
+    What rises less than core_m over the support (overs_m) is its foot, or a cloth below it.
     `mine` (H, W) holds `name` at the thing's pixels; `labels` (H, W) is negative on supports.
     """
     rows, cols = depth_m.shape
@@ -150,7 +153,7 @@ def surroundings(
                 behind += 1
             elif other < z - jump:
                 before += 1
-            elif labels[i, j] >= 0:
+            elif labels[i, j] == 0 or (labels[i, j] > 0 and overs_m[i, j] > core_m):
                 attached += 1
             else:
                 behind += 1

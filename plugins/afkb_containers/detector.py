@@ -16,8 +16,9 @@ from afkb_containers.solid import Solid, sides_from_above, solid_of
 from afkb_surfaces.describe import box_around, on_grid
 from afkb_surfaces.settings import membership
 
-ATTACHED = 0.25
-"""A thing with more of its outline than this going on beyond it is part of something larger."""
+ATTACHED = (0.08, 0.22)
+"""Share of a thing's outline beyond which its surface goes on: below the first it stands free,
+above the second it is part of something larger."""
 LEAST_CLAIM = 0.1
 CUT = 0.5
 """A body that the image edge cuts shows neither its top nor its thickness."""
@@ -54,7 +55,7 @@ class ContainerDetector:
         mine = np.zeros(view.depth_m.shape, np.int32)
         things = self._things(view.depth_m, points, labels, overs, supports)
         for name, cluster in enumerate(things, start=1):
-            detection = self._judge(cluster, view.depth_m, labels, mine, name, T[:3, 3])
+            detection = self._judge(cluster, view.depth_m, labels, overs, mine, name, T[:3, 3])
             if detection is not None:
                 found.append(detection)
         return found
@@ -84,6 +85,7 @@ class ContainerDetector:
         cluster: Cluster,
         depth_m: NDArray[np.float32],
         labels: NDArray[np.int16],
+        overs: NDArray[np.float32],
         mine: NDArray[np.int32],
         name: int,
         camera_xyz: NDArray[np.float64],
@@ -95,10 +97,12 @@ class ContainerDetector:
             return None
         mine[cluster.v, cluster.u] = name
         attached, *_ = surroundings(
-            cluster.u, cluster.v, depth_m, mine, name, labels
+            cluster.u, cluster.v, depth_m, mine, name, labels, overs, self.settings.core_m,
         )
-        if attached > ATTACHED:
+        free = (ATTACHED[1] - attached) / (ATTACHED[1] - ATTACHED[0])
+        if free <= 0:
             return None
+        size *= min(1.0, free)
         solid = solid_of(cluster, base, self.settings)
         if solid.height_m > self.settings.above_m[1] - 0.02:
             return None

@@ -26,7 +26,7 @@ class ContainerSettings:
     size_m: Limits = (0.035, 0.05, 0.35, 0.60)
     depth_m: Limits = (0.008, 0.025, math.inf, math.inf)
     solid_height_m: Limits = (0.060, 0.075, 0.35, 0.50)
-    solid_thickness_m: Limits = (0.022, 0.036, math.inf, math.inf)
+    solid_thickness_m: Limits = (0.018, 0.030, math.inf, math.inf)
     core_m: float = 0.032
     above_m: tuple[float, float] = (0.012, 0.50)
     min_pixels: int = 90

@@ -15,7 +15,13 @@ SOLIDITY = (0.75, 0.90)
 """Share of its image's convex hull that a body must fill: not at all below, fully above."""
 WHOLE = (0.50, 0.70)
 """The same for a hollow body, whose handle or spout stands off: plants and rails fall below."""
-SLENDER = 5.0
+SLENDER = 8.0
+UNSURE = 1.5
+"""Standard deviations of depth by which a thickness must exceed what is thin."""
+LEAN_DEG = (9.0, 18.0)
+"""Cartons and cans stand upright; what leans further is a frame, a book or a screen."""
+NORMAL_2_TO_98 = 4.1
+"""Distance between the 2nd and the 98th percentile of normal noise, in standard deviations."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,11 +39,13 @@ def solid_of(cluster: Cluster, base_m: float, settings: ContainerSettings) -> So
     """Judge a thing by height, thickness and convexity; size from above is the caller's."""
     top = float(np.percentile(cluster.points[:, 2], 98))
     height = top - base_m
-    length, width = sides_from_above(cluster)
+    length, _ = sides_from_above(cluster)
+    width, lean = thickness_and_lean(cluster)
     fill = image_solidity(cluster)
     degree = (
         membership(height, settings.solid_height_m)
-        * membership(width - cluster.sigma_m, settings.solid_thickness_m)
+        * membership(width - UNSURE * cluster.sigma_m, settings.solid_thickness_m)
+        * (1.0 - _ramp(lean, LEAN_DEG))
         * _ramp(fill, SOLIDITY)
     )
     if max(height, length) > SLENDER * max(width, 1e-3):
@@ -58,6 +66,20 @@ def sides_from_above(cluster: Cluster) -> tuple[float, float]:
     local = (xy - (cx, cy)) @ R
     sides = np.subtract(*np.percentile(local, [98, 2], axis=0))
     return float(max(sides)), float(min(sides))
+
+
+def thickness_and_lean(cluster: Cluster) -> tuple[float, float]:
+    """Extent across the plane that fits a thing best, less what noise adds (m), and its lean.
+
+    A frame that leans back is deep when seen from above, and thin across its own plane; the lean
+    (degrees from upright) is 0 where that plane lies rather than stands.
+    """
+    centred = cluster.points - cluster.points.mean(axis=0)
+    _, axes = np.linalg.eigh(centred.T @ centred)
+    low, high = np.percentile(centred @ axes[:, 0], [2, 98])
+    noise = NORMAL_2_TO_98 * cluster.sigma_m
+    lean = float(np.degrees(np.arcsin(min(abs(axes[2, 0]), 1.0))))
+    return float(np.sqrt(max((high - low) ** 2 - noise**2, 0.0))), lean if lean < 40 else 0.0
 
 
 def image_solidity(cluster: Cluster) -> float:

@@ -13,6 +13,10 @@ from numpy.typing import NDArray
 from afkb_surfaces.noise import depth_sigma
 from afkb_surfaces.settings import SurfaceSettings, membership
 
+BAND_PX = (6.0, 16.0, math.inf, math.inf)
+LEVEL_DEG = (-1.0, 0.0, 5.0, 10.0)
+"""A band narrower than BAND_PX is a surface only if it is level: where a thing stands before a
+wall, the sensor draws a ramp from its upper edge to the wall."""
 THICKNESS_M = 0.02
 """Depth given to the box of a surface whose underside isn't seen."""
 
@@ -131,7 +135,9 @@ def support_detection(
     """What an upward-facing patch affords, or None where it is too small or too steep."""
     area = len(footprint_xy) * settings.footprint_step_m**2
     tilt_deg, rms = tilt_and_rms(patch.points)
+    band_px = image_width(patch)
     p = membership(area, settings.area_m2) * membership(tilt_deg, settings.normal_to_up_deg)
+    p *= max(membership(band_px, BAND_PX), membership(tilt_deg, LEVEL_DEG))
     if p <= 0:
         return None
     box = box_around(footprint_xy, height_m, settings.footprint_step_m)
@@ -156,8 +162,17 @@ def support_detection(
             "tilt_deg": tilt_deg,
             "rms": rms,
             "missing_border": missing_border,
+            "band_px": band_px,
         },
     )
+
+
+def image_width(patch: Patch) -> float:
+    """Mean width of a patch across its longer direction in the image, px."""
+    thin = max(1, len(patch.u) // 2000)
+    pixels = np.column_stack([patch.u[::thin], patch.v[::thin]]).astype(np.float32)
+    _, sides, _ = cv2.minAreaRect(pixels)
+    return float(len(patch.u) / (max(sides) + 1.0))
 
 
 def tilt_and_rms(points: NDArray[np.float64]) -> tuple[float, float]:
