@@ -73,8 +73,14 @@ def _stamp(poses: tuple[Pose, Pose, float] | None, earlier: array[float]) -> flo
 
 def scan_tag(path: Path) -> bytes | None:
     """The tag of the scans to read: FLASER if the log has any, for they repeat the others."""
-    found = {tag_of(line) for _, _, line in lines(path)}
-    return next((tag for tag in SCAN_TAGS if tag in found), None)
+    best, second = SCAN_TAGS
+    found = None
+    for _, _, line in lines(path):
+        tag = tag_of(line)
+        if tag == best:
+            return best
+        found = second if tag == second else found
+    return found
 
 
 def lines(path: Path) -> Iterator[tuple[int, int, bytes]]:

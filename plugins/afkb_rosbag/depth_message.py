@@ -58,7 +58,9 @@ def _from_compressed(data: bytes, stated: str) -> NDArray[np.float32]:
         raise BadFrame(f"compressedDepth of {len(data)} bytes is cut short")
     _, quant_a, quant_b = _CONFIG.unpack_from(data)
     if not data.startswith(SIGNATURE, _CONFIG.size):
-        raise BadFrame(f"compressedDepth ({stated!r}) holds no PNG behind its header")
+        raise BadFrame(
+            f"compressedDepth ({stated!r}) holds no PNG behind its header; republish RVL as PNG"
+        )
     pixels = decode_png16(memoryview(data)[_CONFIG.size :])
     if not stated.startswith("32FC1"):
         return metres(pixels)

@@ -82,9 +82,10 @@ def choose_frames(index: Index, options: BagOptions, path: Path) -> Frames:
 def _base(tree: FrameTree, odometry: Odometry, options: BagOptions, sensor: str) -> str | None:
     if options.base_frame is not None:
         return options.base_frame.lstrip("/")
-    if len(odometry.track) and odometry.child:
+    if len(odometry.track) and odometry.child in tree.frames:
         return odometry.child
-    return next((b for b in _BASES if b in tree.frames and tree.connected(b, sensor)), None)
+    usual = next((b for b in _BASES if b in tree.frames and tree.connected(b, sensor)), None)
+    return usual or (odometry.child if len(odometry.track) else "") or None
 
 
 def _odom(index: Index, options: BagOptions, moving: str, path: Path) -> str:

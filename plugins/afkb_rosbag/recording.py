@@ -104,6 +104,8 @@ def header_of(raw: bytes | memoryview, received: int, is_ros2: bool) -> Header:
 
     Reading 20 bytes in place of decoding the message is what lets an hour of images be indexed.
     """
+    if len(raw) < 16:  # too short to be what it says; decoding it will tell
+        return Header(received, "")
     order = "<" if not is_ros2 or raw[1] & 1 else ">"
     seconds, nanoseconds, length = struct.unpack_from(f"{order}III", raw, 4)
     frame_id = bytes(raw[16 : 16 + length]).rstrip(b"\0").decode("utf-8", "replace")

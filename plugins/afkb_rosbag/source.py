@@ -99,7 +99,10 @@ class BagSource:
         for index in wanted:
             needs = self._needs(index)
             while any(need not in held for need in needs):
-                connection, at, raw = next(stream)
+                item = next(stream, None)
+                if item is None:
+                    raise SourceError(f"{self.uri}: it changed since it was opened; open it again")
+                connection, at, raw = item
                 key = (connection.topic, header_of(raw, at, reader.is2).stamp)
                 if last_use.get(key, -1) >= index:
                     held.setdefault(key, (connection, raw))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import Connection
 
-from afkb.errors import SourceError
+from afkb.errors import BadFrame, SourceError
 from afkb_rosbag.depth_message import COMPRESSED, IMAGE, is_depth
 from afkb_rosbag.options import NONE, BagOptions
 from afkb_rosbag.recording import decoded, messages
@@ -18,6 +19,7 @@ _CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
 _SCAN = "sensor_msgs/msg/LaserScan"
 _ODOMETRY = "nav_msgs/msg/Odometry"
 TF_TYPES = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
+_JUDGED = 10
 _TRANSPORTS = ("/compressedDepth", "/compressed")
 
 
@@ -75,12 +77,16 @@ def _depth(reader: AnyReader, path: Path, options: BagOptions) -> str | None:
 
 
 def _holds_depth(reader: AnyReader, path: Path, connection: Connection) -> bool:
-    """Judged by its first message: colour and depth are of one type; infrared is 16-bit too."""
+    """Judged by its first sound message: colour and depth are of one type; infrared is 16-bit too."""
     infrared = any(part.startswith("ir") or "infra" in part for part in connection.topic.split("/"))
     if infrared and "depth" not in connection.topic:
         return False
-    first = next(messages(reader, path, [connection]), None)
-    return first is not None and is_depth(decoded(reader, connection, first[2]))
+    for _, _, raw in islice(messages(reader, path, [connection]), _JUDGED):
+        try:
+            return is_depth(decoded(reader, connection, raw))
+        except BadFrame:  # judge by the next; the frame is reported when it is read
+            continue
+    return False
 
 
 def _camera_info(reader: AnyReader, path: Path, options: BagOptions, depth: str) -> str:

@@ -43,11 +43,11 @@ def png(pixels: NDArray[Any]) -> bytes:
 
 @cache
 def typestore(ros1: bool) -> Any:
-    """Message types of a ROS; ROS 1's lack tf2's."""
+    """Message types of a ROS; ROS 1's lack tf's."""
     store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
     if ros1:
-        text = "geometry_msgs/TransformStamped[] transforms"
-        store.register(get_types_from_msg(text, "tf2_msgs/msg/TFMessage"))
+        for name in ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage"):
+            store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", name))
     return store
 
 
@@ -56,6 +56,7 @@ class BagWriter:
     """Collects messages, then writes them in order of time of recording."""
 
     ros1: bool = False
+    tf_type: str = "tf2_msgs/msg/TFMessage"
     messages: list[tuple[int, str, str, Any]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -145,7 +146,7 @@ class BagWriter:
         )
         one = self.new("geometry_msgs/msg/TransformStamped", header=self.header(t, parent),
                        child_frame_id=child, transform=transform)  # fmt: skip
-        message = self.new("tf2_msgs/msg/TFMessage", transforms=[one])
+        message = self.new(self.tf_type, transforms=[one])
         self.put("/tf_static" if static else "/tf", message, t)
 
     def write(self, path: Path, storage: str = "mcap") -> Path:

@@ -4,10 +4,19 @@ from __future__ import annotations
 
 import json
 import shutil
+import sqlite3
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
 import pytest
+
+from afkb.errors import SourceError
+from afkb.flow import SkippedFrame, View
+from afkb.plugins.protocols import Source
+from afkb.testing import check_source
+from afkb_rosbag import afkb_open_source
+from afkb_rosbag.topics import camera_info_beside
 from bag_samples import (
     CAMERA_FRAME,
     HEIGHT,
@@ -20,13 +29,6 @@ from bag_samples import (
     robot,
     wall,
 )
-
-from afkb.errors import SourceError
-from afkb.flow import SkippedFrame, View
-from afkb.plugins.protocols import Source
-from afkb.testing import check_source
-from afkb_rosbag import afkb_open_source
-from afkb_rosbag.topics import camera_info_beside
 
 
 def open_bag(path: Path, **options: str) -> Source:
@@ -121,6 +123,26 @@ def test_ros1_bag_reads_like_the_ros2_one(tmp_path: Path) -> None:
         np.testing.assert_array_equal(a.scan.ranges_m, b.scan.ranges_m)
 
 
+def test_frame_names_with_a_slash_are_those_without(tmp_path: Path) -> None:
+    """Old ROS 1 writes `/base_link` here and `base_link` there, in `tf/tfMessage`."""
+    bag = robot(BagWriter(ros1=True, tf_type="tf/msg/tfMessage"), odom=False)
+    for _, topic, _, message in bag.messages:
+        if topic == "/tf":
+            message.transforms[0].header.frame_id = "/odom"
+            message.transforms[0].child_frame_id = "/base_link"
+    views = all_views(open_bag(bag.write(tmp_path / "old.bag")))
+    assert views[5].T_odom_base[0, 3] == pytest.approx(0.5)
+
+
+def test_bag_without_message_definitions_opens(tmp_path: Path) -> None:
+    """Before ROS 2 Iron, sqlite3 bags held none."""
+    folder = robot(BagWriter()).write(tmp_path / "b", "sqlite3")
+    with sqlite3.connect(folder / "b.db3") as database:
+        database.execute("DELETE FROM message_definitions")
+    database.close()
+    assert len(all_views(open_bag(folder))) == 6
+
+
 def test_folder_of_one_bag_file_opens(tmp_path: Path) -> None:
     bag = robot(BagWriter()).write(tmp_path / "b")
     (bag / "metadata.yaml").unlink()
@@ -158,6 +180,16 @@ def test_chosen_odometry_topic_comes_before_tf(tmp_path: Path) -> None:
     path = bag.write(tmp_path / "b")
     assert all_views(open_bag(path))[5].T_odom_base[0, 3] == pytest.approx(0.5)
     assert all_views(open_bag(path, odom_topic="/odom"))[5].T_odom_base[0, 3] == pytest.approx(7)
+
+
+def test_odometry_of_a_frame_that_tf_lacks_moves_the_usual_base(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), odom=False, tf=False)
+    for k in range(6):
+        bag.odometry(1.0 + 0.2 * k, 0.1 * k, child="chassis")
+    view = all_views(open_bag(bag.write(tmp_path / "b")))[5]
+    assert view.T_odom_base[0, 3] == pytest.approx(0.5)
+    assert view.T_base_camera is not None
+    assert view.T_base_camera[2, 3] == pytest.approx(1.0)
 
 
 def test_chosen_odom_frame_takes_corrected_poses(tmp_path: Path) -> None:
@@ -259,6 +291,35 @@ def test_slices_keep_index_and_content(tmp_path: Path) -> None:
     assert list(source.views(20)) == []
 
 
+def test_memory_does_not_grow_with_the_recording(tmp_path: Path) -> None:
+    """Four times the frames, each of 150 kB: the peak stays that of a few frames."""
+    peaks = []
+    for frames in (25, 100):
+        path = tmp_path / f"b{frames}"
+        big_recording(frames).write(path)
+        all_of_it = iter(open_bag(path).views())
+        next(all_of_it)
+        tracemalloc.start()
+        assert sum(isinstance(f, View) for f in all_of_it) == frames - 1
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < 1.2 * peaks[0]
+    assert peaks[1] < 50 * 150_000
+
+
+def big_recording(frames: int) -> BagWriter:
+    bag = BagWriter()
+    pixels = np.random.default_rng(0).integers(500, 4000, (240, 320)).astype(np.uint16)
+    bag.tf(1.0, "base_link", CAMERA_FRAME, static=True)
+    bag.camera_info(1.0)
+    info = bag.messages[-1][3]
+    info.width, info.height = 320, 240
+    for k in range(frames):
+        bag.image(1.0 + 0.1 * k, pixels, "16UC1")
+        bag.tf(1.0 + 0.1 * k, "odom", "base_link", (0.1 * k, 0, 0))
+    return bag
+
+
 @pytest.mark.parametrize(
     ("topic", "info"),
     [
@@ -315,6 +376,21 @@ def test_unusable_depth_is_skipped(tmp_path: Path, pixels: np.ndarray, why: str)
 @pytest.mark.parametrize("data", [b"", b"short", b"\0" * 12 + b"no image at all"])
 def test_data_that_is_no_png_is_skipped(tmp_path: Path, data: bytes) -> None:
     assert "compressedDepth" in with_bad_frame(tmp_path, data)
+
+
+def test_first_image_that_is_damaged_does_not_hide_its_topic(tmp_path: Path) -> None:
+    bag = robot(BagWriter(), frames=3)
+    path = bag.write(tmp_path / "b", "sqlite3")
+    with sqlite3.connect(path / "b.db3") as database:
+        first = "SELECT MIN(m.id) FROM messages m JOIN topics t ON m.topic_id = t.id WHERE t.name = ?"
+        (row,) = database.execute(first, ("/camera/depth/image_raw",)).fetchone()
+        database.execute("UPDATE messages SET data = ? WHERE id = ?", (b"\0\1\0\0short", row))
+    database.close()
+    frames = list(open_bag(path).views())
+    assert sum(isinstance(f, SkippedFrame) for f in frames) == 1
+    assert sum(isinstance(f, View) for f in frames) == 2
+    (skipped,) = (f for f in frames if isinstance(f, SkippedFrame))
+    assert "does not decode" in skipped.why
 
 
 def test_gap_in_tf_skips_the_frames_in_it(tmp_path: Path) -> None:
