@@ -5,8 +5,8 @@
 
 With a truth of the form of `homes/*/truth.json` (world frame, the first view's pose is the start):
 distance from the true position (m) and heading (degrees) of every view. With relations (Kümmerle et
-al. 2009, lines `t1 t2 x y z roll pitch yaw`): error of the relative pose of every pair of views that
-a relation joins, in translation (m) and rotation (degrees).
+al. 2009, lines `t1 t2 x y z roll pitch yaw`): error of the relative pose of every pair of views
+that a relation joins, in translation (m) and rotation (degrees).
 """
 
 from __future__ import annotations
