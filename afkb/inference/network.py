@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -11,7 +11,7 @@ from afkb.errors import EvidenceError
 from afkb.inference.objects import ObjectNetwork
 from afkb.inference.relations import RelationshipNetwork
 from afkb.inference.rooms import RoomNetwork
-from afkb.knowledge import SOMETHING_ELSE, KnowledgeBase
+from afkb.knowledge import SOMETHING_ELSE, EvidenceClass, KnowledgeBase
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,16 +76,29 @@ class Network:
     ) -> tuple[str, ...]:
         """Names of the evidence classes that such a thing counts for, in order of name.
 
-        A thing counts by the narrowest features that it affords: a closed package, which is also
-        a container, counts as closed.
+        It counts once for each feature that it affords, for the class that asks for the largest
+        surface; and by its narrowest features: a closed package, which is also a container,
+        counts as closed.
         """
         self.objects.check(affordances, size_xyz, top_height_m)
+        found: dict[str, EvidenceClass] = {}
+        for evidence in self.knowledge_base.evidence_classes.values():
+            if evidence.holds(size_xyz, top_height_m):
+                other = found.setdefault(evidence.feature, evidence)
+                if evidence.least_area_m2 > other.least_area_m2:
+                    found[evidence.feature] = evidence
         afforded = self.objects.afforded(affordances)
-        return tuple(
-            name
-            for name, evidence in sorted(self.knowledge_base.evidence_classes.items())
-            if evidence.feature in afforded and evidence.holds(size_xyz, top_height_m)
-        )
+        return tuple(sorted(found[feature].name for feature in afforded if feature in found))
+
+    def evidence_looked_for(self, features: Iterable[str]) -> tuple[str, ...]:
+        """The counted evidence classes that detectors of these features can report, by name.
+
+        Count those 0, not unobserved, in a room that the robot stood in; how much of the room
+        it saw is a hidden variable of the network, so that 0 says little by itself.
+        """
+        classes = self.knowledge_base.evidence_classes
+        looked = set(features)
+        return tuple(name for name in self.rooms.counts if classes[name].feature in looked)
 
     def room_posterior(self, counts: Mapping[str, int]) -> dict[str, float]:
         """P(room category | counts of evidence classes), summing to 1 (paper §II.F).

@@ -82,7 +82,7 @@ def _count_table(kb: KnowledgeBase, name: str, prior: Array, shares: tuple[float
     table = np.array([[_bins(m * share, size) for share in shares] for m in means])
     if has.any():
         mixture = np.tensordot(weights / weights.sum(), table, axes=1)
-        breadth = kb.parameters["UnknownBreadth"]
+        breadth = kb.parameters["UnknownRoomBreadth"]
         table[unknown] = (1.0 - breadth) * mixture + breadth / len(COUNT_BINS)
     return np.moveaxis(table, 2, 0)
 

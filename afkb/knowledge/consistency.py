@@ -21,6 +21,7 @@ PARAMETERS = (
     "SizeNoise",
     "SizeSpread",
     "UnknownBreadth",
+    "UnknownRoomBreadth",
 )
 """The numbers that the network needs, each an individual of `afn:NetworkParameter`."""
 

@@ -112,6 +112,11 @@ class EvidenceClass(Statement):
     top_height_m: Range
     dispersion: float
 
+    @property
+    def least_area_m2(self) -> float:
+        """Area of the smallest thing of the class: of two that hold, the larger is the closer."""
+        return max(self.length_m[0], 0.0) * max(self.width_m[0], 0.0)
+
     def holds(self, size_xyz: tuple[float, float, float], top_height_m: float) -> bool:
         """Whether a thing of that size (m) with its top at that height (m) is of the class."""
         width, length = sorted(size_xyz[:2])

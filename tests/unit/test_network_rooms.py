@@ -149,3 +149,12 @@ def test_bif_holds_the_whole_network(tmp_path: Path, network: Network) -> None:
     assert model.get_cpds("ContainPredictsSupportBelowThere").get_value(
         ContainPredictsSupportBelowThere="yes", ContainPredictsSupportBelowSeen="yes"
     ) == pytest.approx(0.7)
+
+
+def test_what_detectors_look_for_may_be_counted_as_absent(network: Network) -> None:
+    looked_for = network.evidence_looked_for(["SupportAbility"])
+    assert "BedSupport" in looked_for
+    assert "SmallContainer" not in looked_for
+    bare = network.room_posterior(dict.fromkeys(looked_for, 0))
+    assert bare["Hallway"] > network.room_posterior({})["Hallway"]
+    assert bare["LivingRoom"] < network.room_posterior({})["LivingRoom"]
