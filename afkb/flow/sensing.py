@@ -64,7 +64,8 @@ class LaserScan:
     @property
     def angles(self) -> NDArray[np.float64]:
         """(N,) bearing of each beam in the laser frame, rad."""
-        return self.angle_min + self.angle_increment * np.arange(self.ranges_m.size)
+        count = np.arange(self.ranges_m.size, dtype=np.float64)
+        return self.angle_min + self.angle_increment * count
 
     @property
     def hit(self) -> NDArray[np.bool_]:

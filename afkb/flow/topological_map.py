@@ -159,7 +159,8 @@ class OccupancyGrid:
     """Occupancy probabilities in the map frame.
 
     `probability`: (rows, cols) float32 in 0..1, NaN where nothing is known; cell (0, 0) has its
-    lower left corner at `origin_xy` (m); rows run along +y, columns along +x; `resolution_m` a cell.
+    lower left corner at `origin_xy` (m); rows run along +y, columns along +x; a cell is
+    `resolution_m` wide.
     """
 
     probability: NDArray[np.float32]

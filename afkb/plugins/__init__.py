@@ -1,6 +1,6 @@
 """The plugin host: hook specifications, and the one door through which every plugin comes.
 
-    >>> from afkb.plugins import hookimpl
+>>> from afkb.plugins import hookimpl
 """
 
 import pluggy

@@ -18,7 +18,8 @@ from afkb.plugins.protocols import Detector, Exporter, MapperFactory, Predictor,
 
 
 class _Named(Protocol):
-    name: str
+    @property
+    def name(self) -> str: ...
 
 
 T = TypeVar("T", bound=_Named)

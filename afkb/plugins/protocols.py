@@ -20,8 +20,15 @@ class Source(Protocol):
     - `len(source)`: number of frames, bad ones included.
     """
 
-    uri: str
-    gravity_aligned: bool
+    @property
+    def uri(self) -> str:
+        """What it was opened from."""
+        ...
+
+    @property
+    def gravity_aligned(self) -> bool:
+        """Whether z of its pose frame points up."""
+        ...
 
     def __len__(self) -> int: ...
 
@@ -41,9 +48,20 @@ class Detector(Protocol):
       supports): coarse before fine, as the filtrations go.
     """
 
-    name: str
-    affordances: tuple[str, ...]
-    stage: int
+    @property
+    def name(self) -> str:
+        """Unique name, as given on the command line."""
+        ...
+
+    @property
+    def affordances(self) -> tuple[str, ...]:
+        """Names of the features it can report."""
+        ...
+
+    @property
+    def stage(self) -> int:
+        """0 for what stands by itself, 1 for what needs the detections of stage 0."""
+        ...
 
     def detect(self, view: View, earlier: Sequence[Detection]) -> Sequence[Detection]:
         """What it sees in a placed view; `earlier` holds this view's detections of lower stages."""
@@ -54,8 +72,15 @@ class Detector(Protocol):
 class Predictor(Protocol):
     """Says what follows from what was seen, symbolically (paper §II.D.ii and iii)."""
 
-    name: str
-    order: int
+    @property
+    def name(self) -> str:
+        """Unique name, as given on the command line."""
+        ...
+
+    @property
+    def order(self) -> int:
+        """1 for duals, 2 for co-occurrences."""
+        ...
 
     def predict(self, detections: Sequence[Detection]) -> Sequence[Hypothesis]:
         """Hypotheses from one view's detections; anchors are indexes into them."""
@@ -81,9 +106,14 @@ class Mapper(Protocol):
 class MapperFactory(Protocol):
     """Makes a fresh mapper; `name` is what `--mapper` takes, `rule` what `--rule` takes."""
 
-    name: str
+    @property
+    def name(self) -> str:
+        """Unique name, as given on the command line."""
+        ...
 
-    def __call__(self, rule: str) -> Mapper: ...
+    def __call__(self, rule: str) -> Mapper:
+        """A fresh mapper that updates predictions by this rule."""
+        ...
 
 
 @runtime_checkable
@@ -93,8 +123,15 @@ class Exporter(Protocol):
     `in_map_folder`: part of every map folder (nav2 grid, report), not only of `afkb export`.
     """
 
-    name: str
-    in_map_folder: bool
+    @property
+    def name(self) -> str:
+        """Unique name, as given on the command line."""
+        ...
+
+    @property
+    def in_map_folder(self) -> bool:
+        """Whether it is part of every map folder, not only of an export."""
+        ...
 
     def export(
         self, topological_map: TopologicalMap, folder: Path, run: Mapping[str, object]

@@ -44,7 +44,8 @@ class Association:
                 found[i] = self._see(view, detection, self._surface_track(detection))
             else:
                 things.append(i)
-        for i, track in zip(things, self._thing_tracks([detections[i] for i in things]), strict=True):
+        matched = self._thing_tracks([detections[i] for i in things])
+        for i, track in zip(things, matched, strict=True):
             found[i] = self._see(view, detections[i], track)
         return [self._survivor(t) for t in found]
 
@@ -54,9 +55,7 @@ class Association:
             return track
         return next(t for t in self.tracks if t.id == self._merged_into[track.id])
 
-    def _see(
-        self, view: View, detection: Detection, track: ObservedTrack | None
-    ) -> ObservedTrack:
+    def _see(self, view: View, detection: Detection, track: ObservedTrack | None) -> ObservedTrack:
         if track is None:
             track = self._birth(detection)
         eye = view.T_map_camera if view.depth_m is not None else view.T_map_laser
@@ -144,7 +143,7 @@ def _is_floor(detection: Detection) -> bool:
 def _same_height(track: ObservedTrack, detection: Detection) -> bool:
     deviation = float(np.sqrt(max(detection.covariance_xyz[2, 2], 0.0)))
     apart = abs(track.top.value - detection.position_xyz[2])
-    return apart <= SURFACE_HEIGHT_M + 2 * deviation
+    return bool(apart <= SURFACE_HEIGHT_M + 2 * deviation)
 
 
 def _continues(track: ObservedTrack, detection: Detection) -> bool:
@@ -163,10 +162,14 @@ def _same_surface(first: ObservedTrack, second: ObservedTrack) -> bool:
 
 
 def _overlap_in_height(track: ObservedTrack, bottom: float, top: float) -> bool:
-    return (
+    ends_agree = (
         abs(track.top.value - top) < THING_HEIGHT_M
         or abs(track.bottom.value - bottom) < THING_HEIGHT_M
-    ) and min(track.top.value, top) > max(track.bottom.value, bottom) - THING_HEIGHT_M / 2
+    )
+    return (
+        ends_agree
+        and min(track.top.value, top) > max(track.bottom.value, bottom) - THING_HEIGHT_M / 2
+    )
 
 
 def _distance(track: ObservedTrack, detection: Detection) -> float:

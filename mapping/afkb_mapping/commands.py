@@ -95,9 +95,11 @@ def demo(
     if json_:
         typer.echo(json.dumps({r.what: r.ours for r in rows}, indent=2))
     else:
-        _print_table("The paper's simulated home (Fig. 2)", ("", "paper", "here"), [
-            (r.what, r.paper, r.ours) for r in rows
-        ])
+        _print_table(
+            "The paper's simulated home (Fig. 2)",
+            ("", "paper", "here"),
+            [(r.what, r.paper, r.ours) for r in rows],
+        )
         _print_summary(settings, result)
     _exit_as_interrupted(result)
 
@@ -137,8 +139,10 @@ def _print_summary(settings: Settings, result: RunResult) -> None:
             ("robot places", str(len(found.places))),
             ("things seen", str(kinds.count(NodeKind.OBSERVED))),
             ("things predicted", str(len(kinds) - kinds.count(NodeKind.OBSERVED))),
-            ("rooms, doorways, bounds", f"{len(found.rooms)}, {len(found.doorways)}, "
-                                        f"{len(found.bounds)}"),
+            (
+                "rooms, doorways, bounds",
+                f"{len(found.rooms)}, {len(found.doorways)}, {len(found.bounds)}",
+            ),
             ("predictions come true", str(len(found.closures))),
             ("frames used, skipped", f"{frames['used']}, {frames['skipped']}"),
             ("frames/s, peak memory", f"{run['frames_per_second']}, {run['peak_memory_mb']} MB"),

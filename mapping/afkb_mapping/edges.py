@@ -33,9 +33,11 @@ def edges_of(
         for id_ in seen[place.id]:
             yield _edge(EdgeKind.OBSTACLE, place, id_, entity_of[id_].position_xyz[:2])
         for entity in entities:
-            if entity.predicted_from and place.id in entity.seen_from and entity.id not in seen[
-                place.id
-            ]:
+            if (
+                entity.predicted_from
+                and place.id in entity.seen_from
+                and entity.id not in seen[place.id]
+            ):
                 yield _edge(EdgeKind.OBSTACLE, place, entity.id, entity.position_xyz[:2])
         for bound in bounds:
             if bound.room == place.room and bound.room is not None:

@@ -53,8 +53,10 @@ def _is_part_of_thing(surface: ObservedTrack, things: Iterable[ObservedTrack]) -
 
 
 def _support_of(track: ObservedTrack, surfaces: Iterable[ObservedTrack]) -> str | None:
-    """The surface right below a thing, by outline and height; the floor by height alone, since
-    what stands on it hides it."""
+    """The surface right below a thing, by outline and height.
+
+    The floor by height alone, since what stands on it hides it.
+    """
     if track.is_surface:
         return None
     if track.bottom.value <= STANDS_WITHIN_M:
@@ -83,7 +85,9 @@ def _observed(
     size = (*outline.size_xy, top - bottom)
     z = top if track.is_surface else (top + bottom) / 2
     affordances = track.affordances
-    belief = {"Floor": 1.0} if track.is_floor else network.category_posterior(affordances, size, top)
+    belief = (
+        {"Floor": 1.0} if track.is_floor else network.category_posterior(affordances, size, top)
+    )
     movability, weight = ("Static", 1.0) if track.is_floor else network.movability(belief)
     return Entity(
         id=track.id,
@@ -136,8 +140,10 @@ def supports_expected(predictions: Iterable[PredictedTrack]) -> dict[str, str]:
 def _predicted(track: PredictedTrack, anchors: tuple[str, ...], network: Network) -> Entity:
     x, y = (float(v) for v in track.center_xy)
     width, depth = (float(v) for v in track.size_xy)
-    top = sum(track.top_range_m) / 2 if track.kind is NodeKind.CO_OCCURRENCE else (
-        track.top_range_m[1]
+    top = (
+        sum(track.top_range_m) / 2
+        if track.kind is NodeKind.CO_OCCURRENCE
+        else (track.top_range_m[1])
     )
     size = (width, depth, SURFACE_THICKNESS_M)
     belief = track.categories or network.category_posterior(track.affordances, size, top)

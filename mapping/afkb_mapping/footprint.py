@@ -36,6 +36,7 @@ class Footprint:
         self._low = np.zeros(2, dtype=np.int64)
         self._hits = np.zeros((0, 0), dtype=np.uint16)
         self._near: dict[int, NDArray[np.uint8]] = {}
+        self._points: NDArray[np.float64] | None = None
 
     def __bool__(self) -> bool:
         return bool(self._hits.any())
@@ -61,7 +62,7 @@ class Footprint:
         """Count one view's points (N, 2), each cell once."""
         if not len(points_xy):
             return
-        self._near.clear()
+        self._forget()
         cells = self._cells(points_xy)
         self._grow(cells.min(axis=0), cells.max(axis=0))
         i, j = (cells - self._low).T
@@ -71,11 +72,16 @@ class Footprint:
         """Take over another footprint's counts."""
         if not other._hits.size:
             return
-        self._near.clear()
+        self._forget()
         self._grow(other._low, other._low + other._hits.shape - 1)
         i, j = other._low - self._low
         n, m = other._hits.shape
         self._hits[i : i + n, j : j + m] += other._hits
+
+    def _forget(self) -> None:
+        """Drop what was derived from the counts, since they change."""
+        self._near.clear()
+        self._points = None
 
     def mask(self, margin: int = 0) -> NDArray[np.uint8]:
         """Cells that were seen often enough, with `margin` empty cells around."""
@@ -120,8 +126,10 @@ class Footprint:
 
     def points(self) -> NDArray[np.float64]:
         """(N, 2) centres of its cells, m."""
-        cells: NDArray[np.float64] = (np.argwhere(self.mask()) + self._low + 0.5) * self.cell_m
-        return cells
+        if self._points is None:
+            centers = (np.argwhere(self.mask()) + self._low).astype(np.float64) + 0.5
+            self._points = np.asarray(centers * self.cell_m, dtype=np.float64)
+        return self._points
 
     def outline(self) -> Outline:
         """Rectangle and polygon around it, gaps up to a few cells closed.
@@ -166,9 +174,7 @@ class Footprint:
         return (float(center[0]), float(center[1])), (float(size[0]), float(size[1])), yaw
 
 
-def _trimmed(
-    values: NDArray[np.float64], weights: NDArray[np.float64]
-) -> tuple[float, float]:
+def _trimmed(values: NDArray[np.float64], weights: NDArray[np.float64]) -> tuple[float, float]:
     """Values that cut off `TRIMMED_SHARE` of the weight at either end."""
     order = np.argsort(values, kind="stable")
     share = np.cumsum(weights[order]) / weights.sum()

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import PinholeCamera
 
+Real = TypeVar("Real", bound=np.floating)
 
-def back_project(
-    depth_m: NDArray[np.float32], camera: PinholeCamera
-) -> NDArray[np.float32]:
+
+def back_project(depth_m: NDArray[np.float32], camera: PinholeCamera) -> NDArray[np.float32]:
     """Points of a depth image: (H, W, 3) float32, camera optical frame, m; NaN where no return."""
     z = np.where(depth_m > 0, depth_m, np.nan).astype(np.float32)
     u = ((np.arange(camera.width) - camera.cx) / camera.fx).astype(np.float32)
@@ -20,10 +21,10 @@ def back_project(
     return np.stack([z * u[None, :], z * v[:, None], z], axis=-1)
 
 
-def transform(T_a_b: NDArray[np.float64], points_b: NDArray[np.floating]) -> NDArray[np.floating]:
+def transform(T_a_b: NDArray[np.float64], points_b: NDArray[Real]) -> NDArray[Real]:
     """Points (..., 3) of frame b in frame a, in the precision they came in."""
     R, t = T_a_b[:3, :3].astype(points_b.dtype), T_a_b[:3, 3].astype(points_b.dtype)
-    moved: NDArray[np.floating] = points_b @ R.T + t
+    moved: NDArray[Real] = points_b @ R.T + t
     return moved
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from afkb.flow import View
 from afkb_mapping.geometry import back_project, transform
@@ -23,8 +24,9 @@ def insert_view(grid: GridBuilder, view: View) -> None:
     if view.depth_m is None or view.camera is None:
         return
     near = np.where(view.depth_m < MAX_DEPTH_M, view.depth_m, 0).astype(np.float32)
-    points = back_project(near, view.camera)[::PIXEL_STEP, ::PIXEL_STEP].reshape(-1, 3)
-    points = transform(view.T_map_camera, points[np.isfinite(points[:, 2])].astype(np.float64))
+    pixels = back_project(near, view.camera)[::PIXEL_STEP, ::PIXEL_STEP].reshape(-1, 3)
+    seen: NDArray[np.float64] = pixels[np.isfinite(pixels[:, 2])].astype(np.float64)
+    points = transform(view.T_map_camera, seen)
     height = points[:, 2]
     low, high = OBSTACLE_HEIGHTS_M
     grid.insert_depth_obstacles(

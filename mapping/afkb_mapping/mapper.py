@@ -7,20 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import Closure, Detection, Hypothesis, NodeKind, TopologicalMap, View
+from afkb.flow import Closure, Detection, Hypothesis, TopologicalMap, View
 from afkb.inference import Network
 from afkb.knowledge import KnowledgeBase
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
+from afkb_mapping.grid_input import insert_view
 from afkb_mapping.grounding import fits, ground, joined, same_prediction
 from afkb_mapping.ids import Ids
-from afkb_mapping.grid_input import insert_view
 from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
 from afkb_mapping.snapshot import MapContent, snapshot
 from afkb_mapping.tracks import ObservedTrack, PredictedTrack
 from afkb_mapping.update_rules import against, update_rule
-from afkb_mapping.visibility import look
+from afkb_mapping.visibility import Look, Sight
 
 EMPTY_LIKELIHOOD_RATIO = 0.3
 """Seeing through where a thing should be is this much likelier if it is gone than if it is there:
@@ -148,23 +148,22 @@ class AffordanceMapper:
             expected[i] = old
 
     def _look_for_missing(self, view: View, observed: Sequence[ObservedTrack | None]) -> None:
-        """What should be in view but is seen through counts against (the paper has no such term)."""
+        """What is seen through counts against; the paper has no such term."""
         seen = {t.id for t in observed if t is not None}
+        sight, eye = Sight(view), _eye(view)
         for track in self._association.tracks:
-            if track.id not in seen and not track.is_floor and self._is_empty(view, _body(track)):
-                if track.empty_from.is_new(_eye(view), track.footprint.points().mean(axis=0)):
-                    track.existence = against(track.existence, EMPTY_LIKELIHOOD_RATIO)
+            if track.id in seen or track.is_floor:
+                continue
+            body = _body(track, sight)
+            if _is_empty(sight.look(body)) and track.empty_from.is_new(eye, body[0, :2]):
+                track.existence = against(track.existence, EMPTY_LIKELIHOOD_RATIO)
         for prediction in list(self._predictions):
-            if self._is_empty(view, prediction.sample_points()):
-                if prediction.empty_from.is_new(_eye(view), prediction.center_xy):
-                    prediction.probability = against(prediction.probability, EMPTY_LIKELIHOOD_RATIO)
+            empty = _is_empty(sight.look(prediction.sample_points()))
+            if empty and prediction.empty_from.is_new(eye, prediction.center_xy):
+                prediction.probability = against(prediction.probability, EMPTY_LIKELIHOOD_RATIO)
             if prediction.probability < GONE_BELOW:
                 self._predictions.remove(prediction)
                 self._refuted += 1
-
-    def _is_empty(self, view: View, points_xyz: NDArray[np.float64]) -> bool:
-        found = look(view, points_xyz)
-        return found.in_view >= LOOKED_AT_SHARE and found.empty >= LOOKED_AT_SHARE
 
     def _link(
         self,
@@ -193,9 +192,18 @@ def _eye(view: View) -> NDArray[np.float64]:
     return eye
 
 
-def _body(track: ObservedTrack) -> NDArray[np.float64]:
-    """Points (N, 3) that a look at a thing meets first: its top, or its body at half height."""
+def _is_empty(found: Look) -> bool:
+    return found.in_view >= LOOKED_AT_SHARE and found.empty >= LOOKED_AT_SHARE
+
+
+def _body(track: ObservedTrack, sight: Sight) -> NDArray[np.float64]:
+    """Points (N, 3) that a look at a thing meets first: its top, or its body at half height.
+
+    None where the thing is out of sight anyway.
+    """
     xy = track.footprint.points()
     z = track.top.value if track.is_surface else (track.top.value + track.bottom.value) / 2
+    if not len(xy) or not sight.may_see(np.array([*xy[0], z]), float(np.ptp(xy, axis=0).sum())):
+        return np.zeros((0, 3))
     thinned = xy[:: max(1, len(xy) // 200)]
     return np.column_stack([thinned, np.full(len(thinned), z)])

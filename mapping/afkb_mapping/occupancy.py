@@ -133,6 +133,15 @@ class GridBuilder:
             log_odds[inside], seen[inside] = self._log_odds, self._seen
         self._log_odds, self._seen, self._first_cell = log_odds, seen, low
 
+    def unknown(self, points_xy: Points) -> NDArray[np.bool_]:
+        """(N,) for points (N, 2): whether nothing has been seen in their cells yet."""
+        cells = self._cells(points_xy)
+        inside = ((cells >= 0) & (cells < self._seen.shape[::-1])).all(axis=1)
+        unseen = np.ones(len(points_xy), dtype=bool)
+        cols, rows = cells[inside].T
+        unseen[inside] = ~self._seen[rows, cols]
+        return unseen
+
     def grid(self) -> OccupancyGrid:
         """The grid so far, cut to what was seen; one unknown cell where nothing was."""
         rows, cols = np.flatnonzero(self._seen.any(axis=1)), np.flatnonzero(self._seen.any(axis=0))

@@ -37,9 +37,7 @@ def _bar() -> Iterator[Callable[[Progress], None]]:
     )
     with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("mapping", total=None, fps=0.0)
-        yield lambda p: bar.update(
-            task, completed=p.done, total=p.total, fps=p.frames_per_second
-        )
+        yield lambda p: bar.update(task, completed=p.done, total=p.total, fps=p.frames_per_second)
 
 
 def _lines() -> Callable[[Progress], None]:

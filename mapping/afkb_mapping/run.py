@@ -7,7 +7,6 @@ import resource
 import signal
 import sys
 import time
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -51,7 +50,7 @@ class Settings:
 class Stages:
     """Seconds spent per stage of the run."""
 
-    seconds: Counter[str] = field(default_factory=Counter)
+    seconds: dict[str, float] = field(default_factory=dict)
 
     @contextmanager
     def timed(self, stage: str) -> Iterator[None]:
@@ -60,7 +59,8 @@ class Stages:
         try:
             yield
         finally:
-            self.seconds[stage] += time.perf_counter() - begun
+            spent = time.perf_counter() - begun
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,13 +163,19 @@ def _sample(source: Source, settings: Settings) -> list[View]:
     wanted = SAMPLED_VIEWS if not source.gravity_aligned else SAMPLED_VIEWS_UPRIGHT
     stride = settings.stride * max(1, _frame_count(source, settings) // wanted)
     first = next(
-        (f for f in source.views(settings.start, settings.stop, settings.stride)
-         if isinstance(f, View)),
+        (
+            f
+            for f in source.views(settings.start, settings.stop, settings.stride)
+            if isinstance(f, View)
+        ),
         None,
     )
     if first is None:
-        skipped = [f for f in source.views(settings.start, settings.stop, settings.stride)
-                   if isinstance(f, SkippedFrame)]
+        skipped = [
+            f
+            for f in source.views(settings.start, settings.stop, settings.stride)
+            if isinstance(f, SkippedFrame)
+        ]
         raise SourceError(_nothing_usable(settings.uri, skipped))
     rest = source.views(first.index, settings.stop, stride)
     return [first, *(f for f in rest if isinstance(f, View) and f.index != first.index)]
@@ -182,9 +188,7 @@ def _nothing_usable(uri: str, skipped: Sequence[SkippedFrame]) -> str:
     return f"{uri}: none of {len(skipped)} frames can be used; the first one, {why}"
 
 
-def _timed(
-    frames: Iterator[View | SkippedFrame], stages: Stages
-) -> Iterator[View | SkippedFrame]:
+def _timed(frames: Iterator[View | SkippedFrame], stages: Stages) -> Iterator[View | SkippedFrame]:
     while True:
         with stages.timed("read"):
             frame = next(frames, None)
@@ -235,8 +239,10 @@ def _finished(
     mapper: Mapper, T_map_source: NDArray[np.float64], note: str | None
 ) -> TopologicalMap:
     topological_map = mapper.finish(T_map_source)
-    return replace(topological_map, notes=(*topological_map.notes, note)) if note else (
-        topological_map
+    return (
+        replace(topological_map, notes=(*topological_map.notes, note))
+        if note
+        else (topological_map)
     )
 
 
@@ -299,6 +305,6 @@ def _peak_memory_mb() -> float:
 
 def _state(topological_map: TopologicalMap) -> dict[str, bytes]:
     """What continuing needs beyond the RDF: the trajectory, as text that `numpy.loadtxt` reads."""
-    rows = ("\n".join(" ".join(repr(float(v)) for v in row) for row in topological_map.trajectory))
+    rows = "\n".join(" ".join(repr(float(v)) for v in row) for row in topological_map.trajectory)
     header = "# stamp (s), then T_map_base row by row (4x4, m)\n"
     return {"trajectory.txt": f"{header}{rows}\n".encode()}

@@ -1,4 +1,4 @@
-"""The map as it stands: tracks become entities, cells become rooms, and the graph gets its edges."""
+"""The map as it stands: tracks become entities, cells rooms, and the graph gets its edges."""
 
 from __future__ import annotations
 
@@ -29,7 +29,6 @@ from afkb_mapping.places import Place
 from afkb_mapping.room_lookup import RoomLookup, room_id
 from afkb_mapping.rooms import Segmentation, segment_rooms
 from afkb_mapping.tracks import ObservedTrack, PredictedTrack
-
 
 STEP_M = 0.05
 """What is lower than this, a carpet or a sill, a robot drives over."""

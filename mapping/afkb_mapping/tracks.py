@@ -173,8 +173,11 @@ def _evidence(detection: Detection, view_index: int) -> str:
 
 @dataclass(slots=True, eq=False)
 class PredictedTrack:
-    """One thing that is expected (V_ap or V_ac): an upright rectangle `low_xy`..`high_xy` on the
-    floor plane (m), the heights its top may have, and how likely it is."""
+    """One thing that is expected (V_ap or V_ac), where, how high, and how likely it is.
+
+    It covers an upright rectangle `low_xy`..`high_xy` of the floor plane; `top_range_m` are the
+    heights its top may have, m.
+    """
 
     id: str
     kind: NodeKind

@@ -13,7 +13,7 @@ MARGIN_M = 0.10
 MARGIN_PER_RANGE = 0.03
 """A surface counts as missing only where depth lies clearly behind it: 10 cm and 3 % of range,
 three times a Kinect's noise at 4 m plus what the pose may be off."""
-USABLE_RANGE_M = 4.0
+NEAREST_M, USABLE_RANGE_M = 0.3, 4.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,29 +28,46 @@ class Look:
 NOT_LOOKED_AT = Look(0.0, 0.0, 0.0)
 
 
-def look(view: View, points_xyz: NDArray[np.float64]) -> Look:
-    """How a view looked at points (N, 3) of the map frame.
+class Sight:
+    """What one placed view can tell about points of the map frame; without depth, nothing."""
 
-    A point is *empty* where the depth behind it was measured, *hit* where depth agrees with it,
-    otherwise occluded or without return.
-    """
-    if view.depth_m is None or view.camera is None or not len(points_xyz):
-        return NOT_LOOKED_AT
-    T = np.linalg.inv(view.T_map_camera)
-    x, y, z = (points_xyz @ T[:3, :3].T + T[:3, 3]).T
-    ahead = (z > 0.3) & (z < USABLE_RANGE_M)
-    safe = np.where(ahead, z, 1.0)
-    u = np.round(view.camera.fx * x / safe + view.camera.cx).astype(int)
-    v = np.round(view.camera.fy * y / safe + view.camera.cy).astype(int)
-    inside = ahead & (u >= 0) & (u < view.camera.width) & (v >= 0) & (v < view.camera.height)
-    if not inside.any():
-        return NOT_LOOKED_AT
-    measured = view.depth_m[v[inside], u[inside]]
-    behind = measured - z[inside]
-    margin = MARGIN_M + MARGIN_PER_RANGE * z[inside]
-    returned = measured > 0
-    return Look(
-        float(inside.mean()),
-        float((returned & (behind > margin)).mean()),
-        float((returned & (np.abs(behind) <= margin)).mean()),
-    )
+    def __init__(self, view: View) -> None:
+        self._depth_m, self._camera = view.depth_m, view.camera
+        if view.depth_m is not None:
+            self._T_camera_map = np.linalg.inv(view.T_map_camera)
+
+    def look(self, points_xyz: NDArray[np.float64]) -> Look:
+        """How the view looked at points (N, 3).
+
+        A point is *empty* where the depth behind it was measured, *hit* where depth agrees with
+        it, otherwise occluded or without return.
+        """
+        if self._depth_m is None or self._camera is None or not len(points_xyz):
+            return NOT_LOOKED_AT
+        camera, T = self._camera, self._T_camera_map
+        x, y, z = (points_xyz @ T[:3, :3].T + T[:3, 3]).T
+        ahead = (z > NEAREST_M) & (z < USABLE_RANGE_M)
+        if not ahead.any():
+            return NOT_LOOKED_AT
+        safe = np.where(ahead, z, 1.0)
+        u = np.round(camera.fx * x / safe + camera.cx).astype(int)
+        v = np.round(camera.fy * y / safe + camera.cy).astype(int)
+        inside = ahead & (u >= 0) & (u < camera.width) & (v >= 0) & (v < camera.height)
+        if not inside.any():
+            return NOT_LOOKED_AT
+        measured = self._depth_m[v[inside], u[inside]]
+        behind = measured - z[inside]
+        margin = MARGIN_M + MARGIN_PER_RANGE * z[inside]
+        returned = measured > 0
+        return Look(
+            float(inside.mean()),
+            float((returned & (behind > margin)).mean()),
+            float((returned & (np.abs(behind) <= margin)).mean()),
+        )
+
+    def may_see(self, xyz: NDArray[np.float64], radius_m: float) -> bool:
+        """Whether anything within `radius_m` of a point can be in range at all: a quick test."""
+        if self._depth_m is None:
+            return False
+        z = float(self._T_camera_map[2, :3] @ xyz + self._T_camera_map[2, 3])
+        return NEAREST_M - radius_m < z < USABLE_RANGE_M + radius_m
