@@ -11,9 +11,8 @@ from afkb.flow import TopologicalMap
 from afkb.store import things
 from afkb.store.scribe import Names, Scribe
 from afkb.store.turtle import fingerprint
-from afkb.store.vocabulary import SCENES, term
+from afkb.store.vocabulary import FORMAT_VERSION, SCENES, term
 
-FORMAT_VERSION = 1
 _RUN_FACTS = ("mapper", "rule", "stride", "start", "stop", "seed")
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from pyoxigraph import DefaultGraph, Literal, NamedNode, RdfFormat, Store, parse
 
 from afkb.errors import MapError
-from afkb.store.vocabulary import MAP_NODES, local_name, term
+from afkb.store.vocabulary import FORMAT_VERSION, MAP_NODES, local_name, term
 
 if TYPE_CHECKING:
     import rdflib
@@ -34,7 +34,7 @@ def load(folder: Path | str) -> StoredMap:
         where = getattr(error, "lineno", None)
         at = f", line {where}" if where else ""
         raise MapError(
-            f"{path}{at}: not readable as Turtle ({error.args[0]}); write the map again"
+            f"{path}{at}: not readable as a map ({error.args[0]}); write it again"
         ) from error
     except OSError as error:
         raise MapError(f"{path}: {error.strerror or error}") from error
@@ -46,6 +46,9 @@ def read_scene(turtle: bytes) -> Store:
     store.extend(parse(turtle, format=RdfFormat.TURTLE))
     if not any(store.quads_for_pattern(None, term("rdf:type"), term("afn:TopologicalMap"))):
         raise ValueError("no afn:TopologicalMap in it")
+    for quad in store.quads_for_pattern(None, term("afn:formatVersion"), None):
+        if isinstance(quad.object, Literal) and int(quad.object.value) > FORMAT_VERSION:
+            raise ValueError(f"format {quad.object.value} is newer than this afkb's; upgrade afkb")
     return store
 
 

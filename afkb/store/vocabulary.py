@@ -7,6 +7,7 @@ from urllib.parse import quote, unquote
 from pyoxigraph import NamedNode
 
 AFN = "https://w3id.org/afkb/afnet#"
+FORMAT_VERSION = 1
 SCENES = "https://w3id.org/afkb/scene/"
 # For names that a plugin uses and no ontology in use has; the same in every map.
 OTHER_NAMES = "https://w3id.org/afkb/name#"

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import yaml
 
+import afkb.store.folder as folder_module
 from afkb.errors import MapError
 from afkb.flow import NodeKind
 from afkb.store import check_out, load, write_map
@@ -252,6 +253,24 @@ def test_numbers_that_mean_nothing_are_refused(tmp_path: Path, wrong: dict[str, 
     with pytest.raises(MapError, match="#n1: afn:"):
         write(tmp_path / "m", entities=(entity("n1", **wrong),), closures=(), edges=())
     assert not list(tmp_path.iterdir())
+
+
+def test_a_map_of_a_later_format_is_refused(tmp_path: Path) -> None:
+    folder = write(tmp_path / "m")
+    scene = folder / "scene.ttl"
+    scene.write_text(scene.read_text().replace("formatVersion 1", "formatVersion 2"))
+    with pytest.raises(MapError, match="newer than this afkb"):
+        load(folder)
+
+
+def test_without_an_atomic_exchange_two_renames_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = write(tmp_path / "m")
+    monkeypatch.setattr(folder_module, "_exchange", lambda a, b: False)
+    write(folder, notes=("second",))
+    assert load(folder).notes == ["second"]
+    assert [p.name for p in tmp_path.iterdir()] == ["m"]
 
 
 def test_no_such_map(tmp_path: Path) -> None:
