@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from afkb.knowledge import KnowledgeBase
     from afkb.plugins.protocols import Source
 
+_METADATA = "metadata.yaml"
 _ENDINGS = frozenset({".bag", ".mcap", ".db3"})
 
 
@@ -30,5 +31,13 @@ def afkb_open_source(
 
 def _is_bag(path: Path) -> bool:
     if path.is_dir():
-        return any(p.suffix in _ENDINGS or p.name == "metadata.yaml" for p in path.iterdir())
+        return any(p.suffix in _ENDINGS for p in path.iterdir()) or _is_metadata(path / _METADATA)
     return path.is_file() and path.suffix in _ENDINGS
+
+
+def _is_metadata(path: Path) -> bool:
+    """Whether it is ROS 2's, for others call theirs `metadata.yaml` too."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return b"rosbag2_bagfile_information" in file.read(4096)

@@ -15,6 +15,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from afkb.errors import BadFrame, SourceError
 
+_MAGIC = {".bag": b"#ROSBAG V", ".mcap": b"\x89MCAP0\r\n", ".db3": b"SQLite format 3\0"}
 _REPAIR = "if it was cut short, repair it first (`mcap recover`, `rosbag reindex`)"
 
 
@@ -56,12 +57,27 @@ def _open(path: Path) -> AnyReader:
     # Bags from before ROS 2 Iron carry no message definitions; these messages never changed.
     store = get_typestore(Stores.ROS2_HUMBLE)
     paths = bag_paths(path)
+    for file in paths:
+        _check_magic(file)
     try:
         reader = AnyReader(paths, default_typestore=store)
         reader.open()
     except Exception as error:  # rosbags lets errors of struct, codecs, YAML and SQLite through
         raise _unreadable(path, error) from error
     return reader
+
+
+def _check_magic(path: Path) -> None:
+    """Raise `SourceError` where a file does not begin as its name promises."""
+    magic = _MAGIC.get(path.suffix)
+    if magic is None or not path.is_file():
+        return
+    with path.open("rb") as file:
+        if file.read(len(magic)) != magic:
+            raise SourceError(
+                f"{path}: not a readable bag: it does not begin as a *{path.suffix} file does; "
+                "copy it again from where it was recorded"
+            )
 
 
 def messages(

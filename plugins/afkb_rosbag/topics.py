@@ -39,8 +39,8 @@ def choose_topics(reader: AnyReader, path: Path, options: BagOptions) -> Topics:
     scan = _one(reader, path, "scan_topic", options.scan_topic, (_SCAN,))
     if depth is None and scan is None:
         raise SourceError(
-            f"{path}: no depth image and no laser scan; its topics: {_listed(reader.connections)}; "
-            "choose with depth_topic= or scan_topic="
+            f"{path}: no depth image and no laser scan among its topics: "
+            f"{_listed(reader.connections)}; record one, or choose depth_topic= or scan_topic="
         )
     info = None if depth is None else _camera_info(reader, path, options, depth)
     odom = _one(reader, path, "odom_topic", options.odom_topic, (_ODOMETRY,))
@@ -77,7 +77,7 @@ def _depth(reader: AnyReader, path: Path, options: BagOptions) -> str | None:
 
 
 def _holds_depth(reader: AnyReader, path: Path, connection: Connection) -> bool:
-    """Judged by its first sound message: colour and depth are of one type; infrared is 16-bit too."""
+    """Judged by its first sound message: colour and infrared come in the same type."""
     infrared = any(part.startswith("ir") or "infra" in part for part in connection.topic.split("/"))
     if infrared and "depth" not in connection.topic:
         return False

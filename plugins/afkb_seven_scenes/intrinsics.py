@@ -27,7 +27,8 @@ def find_intrinsics(
     path = next(_candidates(folder), None)
     if path is None:
         raise SourceError(
-            f"{folder / _NAMES[0]}: no intrinsics; {_MEND}, or give intrinsics=fx,fy,cx,cy"
+            f"{folder / _NAMES[0]}: no intrinsics; {_MEND}, "
+            "or give the option intrinsics=fx,fy,cx,cy"
         )
     return _camera(str(path), _MEND, _read(path), size)
 

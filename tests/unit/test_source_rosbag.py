@@ -382,7 +382,8 @@ def test_first_image_that_is_damaged_does_not_hide_its_topic(tmp_path: Path) -> 
     bag = robot(BagWriter(), frames=3)
     path = bag.write(tmp_path / "b", "sqlite3")
     with sqlite3.connect(path / "b.db3") as database:
-        first = "SELECT MIN(m.id) FROM messages m JOIN topics t ON m.topic_id = t.id WHERE t.name = ?"
+        ids = "SELECT MIN(m.id) FROM messages m JOIN topics t ON m.topic_id = t.id"
+        first = f"{ids} WHERE t.name = ?"
         (row,) = database.execute(first, ("/camera/depth/image_raw",)).fetchone()
         database.execute("UPDATE messages SET data = ? WHERE id = ?", (b"\0\1\0\0short", row))
     database.close()

@@ -8,11 +8,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from afkb.errors import SourceError
+from afkb.errors import BadFrame, SourceError
 from afkb.flow import SkippedFrame, View
 from afkb.plugins.protocols import Source
 from afkb.testing import check_source
+from afkb_mapping.depth_png import decode_png16
 from afkb_seven_scenes import afkb_open_source
 
 WIDTH, HEIGHT = 16, 12
@@ -149,6 +152,23 @@ def test_colour_of_another_size_is_not_registered(folder: Path) -> None:
 
 
 # Bad input
+
+
+WHOLE = cv2.imencode(".png", np.arange(192, dtype=np.uint16).reshape(HEIGHT, WIDTH) + 900)[1]
+
+
+@given(st.integers(0, WHOLE.size - 1))
+def test_png_cut_anywhere_is_never_believed(length: int) -> None:
+    with pytest.raises(BadFrame):
+        decode_png16(WHOLE.tobytes()[:length])
+
+
+@given(st.integers(0, WHOLE.size - 1), st.integers(1, 255))
+def test_png_with_a_wrong_byte_is_never_believed(at: int, change: int) -> None:
+    data = bytearray(WHOLE.tobytes())
+    data[at] ^= change
+    with pytest.raises(BadFrame):
+        decode_png16(bytes(data))
 
 
 def test_truncated_png_is_skipped(folder: Path) -> None:
