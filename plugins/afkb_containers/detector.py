@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from afkb.flow import Detection, View
 from afkb_containers.above import Supports, fit_supports, label_things, map_points
 from afkb_containers.clusters import Cluster, clusters_from_above, surroundings
 from afkb_containers.concavity import Opening, find_opening
+from afkb_containers.hidden import things_on_hidden_supports
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import Solid, sides_from_above, solid_of
 from afkb_surfaces.describe import box_around, on_grid
@@ -22,6 +24,8 @@ above the second it is part of something larger."""
 LEAST_CLAIM = 0.1
 CUT = 0.5
 """A body that the image edge cuts shows neither its top nor its thickness."""
+SOLID, FLOATING = 0.75, 0.60
+"""How often a closed, compact, upright body holds something: on a support seen, or not seen."""
 SIGHT_SHARE = 0.6
 """Share of what a sight line could show of an opening, from which it is taken for deep."""
 
@@ -53,8 +57,9 @@ class ContainerDetector:
         )
         found = []
         mine = np.zeros(view.depth_m.shape, np.int32)
-        things = self._things(view.depth_m, points, labels, overs, supports)
-        for name, cluster in enumerate(things, start=1):
+        on_supports = self._things(view.depth_m, points, labels, overs, supports)
+        hidden = things_on_hidden_supports(view.depth_m, points, labels, s.min_pixels)
+        for name, cluster in enumerate(chain(on_supports, hidden), start=1):
             detection = self._judge(cluster, view.depth_m, labels, overs, mine, name, T[:3, 3])
             if detection is not None:
                 found.append(detection)
@@ -90,8 +95,8 @@ class ContainerDetector:
         name: int,
         camera_xyz: NDArray[np.float64],
     ) -> Detection | None:
-        base = cluster.support_height_m
-        assert base is not None
+        seen = cluster.support_height_m is not None
+        base = lowest_seen(cluster) if cluster.support_height_m is None else cluster.support_height_m
         size = membership(sides_from_above(cluster)[0], self.settings.size_m)
         if size <= 0:
             return None
@@ -108,7 +113,7 @@ class ContainerDetector:
             return None
         opening = find_opening(cluster, camera_xyz)
         open_p = self._open_probability(opening) * size * solid.whole
-        closed_p = 0.75 * solid.degree * size * (1 - open_p)
+        closed_p = (SOLID if seen else FLOATING) * solid.degree * size * (1 - open_p)
         if cluster.cut_by_image:
             closed_p *= CUT
         if max(open_p, closed_p) < LEAST_CLAIM:
@@ -142,9 +147,11 @@ class ContainerDetector:
         if closed_p >= LEAST_CLAIM:
             affordances["IntrinsicContainAbility"] = closed_p
         measures = {
-            "support_height": base_m, "rim_height": rim, "height": rim - base_m,
-            "thickness": solid.thickness_m, "solidity": solid.solidity, "attached": attached,
+            "rim_height": rim, "height": rim - base_m, "thickness": solid.thickness_m,
+            "solidity": solid.solidity, "attached": attached,
         }  # fmt: skip
+        if cluster.support_height_m is not None:
+            measures["support_height"] = cluster.support_height_m
         if opening is not None:
             measures |= {
                 "depth": opening.depth_m,
@@ -167,6 +174,11 @@ class ContainerDetector:
             cut_by_image=cluster.cut_by_image,
             measures=measures,
         )
+
+
+def lowest_seen(cluster: Cluster) -> float:
+    """Height of the lowest part of a thing in sight, strays left out, m."""
+    return float(np.percentile(cluster.points[:, 2], 2))
 
 
 def height_per_depth(
