@@ -12,8 +12,8 @@ _WIDTH_WITHOUT_TERMINAL = 200
 
 
 def print_json(value: object) -> None:
-    """Print a value as JSON and nothing else, so that it can be piped."""
-    typer.echo(json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False))
+    """Print a value as JSON and nothing else, in ASCII, so that it passes through any pipe."""
+    typer.echo(json.dumps(value, indent=1, allow_nan=False))
 
 
 def print_text(text: str) -> None:

@@ -38,7 +38,7 @@ def plan(topological_map: TopologicalMap) -> str:
     view = f"{d.number(west)} {d.number(-north)} {d.number(east - west)} {d.number(north - south)}"
     size = f"--label:{d.number(1.6 * radius)}px"
     groups = "\n".join(d.group(name, layers[name]) for name in LAYERS)
-    scale = _scale_bar(west, south)
+    scale = _scale_bar(west, south, max(east - west, north - south))
     return (
         f'<svg class="plan" viewBox="{view}" style="{size}" role="img" '
         f'aria-label="Plan of the map">\n{groups}\n{scale}\n</svg>'
@@ -189,7 +189,10 @@ def _ids(m: TopologicalMap, radius: float) -> Iterator[str]:
         yield d.text("label", x, y + 1.3 * radius, entity.id)
 
 
-def _scale_bar(west: float, south: float) -> str:
-    start, end = (west + 0.2, south + 0.15), (west + 1.2, south + 0.15)
-    parts = [d.line("ruler", start, end), d.text("label", west + 0.7, south + 0.2, "1 m")]
-    return d.group("scale", parts)
+def _scale_bar(west: float, south: float, extent: float) -> str:
+    """A bar of 1, 2, 5 or 10 m, at most a sixth of the plan, in its lower left corner."""
+    length = max((m for m in (1, 2, 5, 10) if m <= extent / 6), default=1)
+    x, y = west + 0.02 * extent, south + 0.02 * extent
+    bar = d.line("ruler", (x, y), (x + length, y))
+    name = d.text("label", x + length / 2, y + 0.006 * extent, f"{length} m")
+    return d.group("scale", [bar, name])
