@@ -18,7 +18,7 @@ pieces of furniture share none, however small the gap."""
 SURFACE_GAP_M = 0.08
 """Where the image edge cuts a surface, its other part may begin this far on."""
 SURFACE_HEIGHT_M = 0.015
-"""Parts of one surface agree in height within this and twice the measurement's deviation."""
+"""Parts of one surface agree in height within this and the measurement's standard deviation."""
 THING_REACH_M = 0.06
 THING_HEIGHT_M = 0.06
 FAR_M = 1e3
@@ -143,7 +143,7 @@ def _is_floor(detection: Detection) -> bool:
 def _same_height(track: ObservedTrack, detection: Detection) -> bool:
     deviation = float(np.sqrt(max(detection.covariance_xyz[2, 2], 0.0)))
     apart = abs(track.top.value - detection.position_xyz[2])
-    return bool(apart <= SURFACE_HEIGHT_M + 2 * deviation)
+    return bool(apart <= SURFACE_HEIGHT_M + deviation)
 
 
 def _continues(track: ObservedTrack, detection: Detection) -> bool:
