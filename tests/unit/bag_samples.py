@@ -17,6 +17,10 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from afkb.flow import View
+from afkb.plugins.protocols import Source
+from afkb_rosbag import afkb_open_source
+
 NS = 1_000_000_000
 WIDTH, HEIGHT = 40, 30
 CAMERA_FRAME = "camera_optical"
@@ -212,3 +216,15 @@ def quantised(depth_m: NDArray[np.float32], depth_max: float = 10.0, quant: floa
     with np.errstate(divide="ignore"):
         inverse = np.where(depth_m > 0, a / depth_m + b, 0)
     return struct.pack("<iff", 0, a, b) + png(inverse.astype(np.uint16))
+
+
+def open_bag(path: Path, **options: str) -> Source:
+    source = afkb_open_source(str(path), options, None)  # type: ignore[arg-type]
+    assert source is not None
+    return source
+
+
+def all_views(source: Source) -> list[View]:
+    frames = list(source.views())
+    assert all(isinstance(f, View) for f in frames), frames
+    return [f for f in frames if isinstance(f, View)]
