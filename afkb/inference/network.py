@@ -93,8 +93,9 @@ class Network:
     def evidence_looked_for(self, features: Iterable[str]) -> tuple[str, ...]:
         """The counted evidence classes that detectors of these features can report, by name.
 
-        Count those 0, not unobserved, in a room that the robot stood in; how much of the room
-        it saw is a hidden variable of the network, so that 0 says little by itself.
+        Where the robot stood in a room, count those 0 rather than leave them unobserved: how much
+        of the room it saw is a hidden variable of the network. Name only features whose detectors
+        overlook little, as of supports.
         """
         classes = self.knowledge_base.evidence_classes
         looked = set(features)
