@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 from afkb_mapping.run import Progress
 
-SECONDS_BETWEEN_LINES = 10.0
+SECONDS_BETWEEN_LINES = 5.0
 
 
 @contextmanager
