@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from afkb.errors import MapError
-from afkb.store.stored import SCENE_FILE
+from afkb.store.stored import RUN_FILE, SCENE_FILE
 
 _AT_FDCWD = -100
 _RENAME_EXCHANGE = 2
@@ -46,10 +46,16 @@ def _refuse_what_is_no_map(folder: Path) -> None:
         raise MapError(f"{folder}: is a file, not a map folder; left alone, choose another --out")
     if folder.is_mount():
         raise MapError(f"{folder}: is a mount point and can't be replaced; name a folder inside it")
-    if not (folder / SCENE_FILE).is_file() and any(folder.iterdir()):
+    if Path.cwd().is_relative_to(folder.resolve()):
+        raise MapError(f"{folder}: is the current folder; name a folder inside it")
+    if not _is_map(folder) and any(folder.iterdir()):
         raise MapError(
             f"{folder}: holds something that is not a map; left alone, choose another --out"
         )
+
+
+def _is_map(folder: Path) -> bool:
+    return all((folder / name).is_file() for name in (SCENE_FILE, RUN_FILE))
 
 
 @contextmanager

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import rdflib
 
 SCENE_FILE = "scene.ttl"
+RUN_FILE = "run.json"
 
 
 def load(folder: Path | str) -> StoredMap:

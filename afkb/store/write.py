@@ -13,10 +13,9 @@ from afkb.store.folder import carry_over, check_out, put_in_place, scratch_besid
 from afkb.store.scene import scene_base, scene_triples
 from afkb.store.scribe import Names
 from afkb.store.shapes import map_json
-from afkb.store.stored import SCENE_FILE, StoredMap, load, read_scene
+from afkb.store.stored import RUN_FILE, SCENE_FILE, StoredMap, load, read_scene
 from afkb.store.turtle import to_turtle
 
-RUN_FILE = "run.json"
 STATE = "state"
 # The report shows run.json as it is where a browser lets it do no more: figures come first.
 _TOLD_FIRST = ("frames_per_second", "peak_memory_mb", "seconds")

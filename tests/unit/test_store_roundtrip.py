@@ -166,10 +166,21 @@ def test_what_is_not_a_map_is_left_alone(tmp_path: Path) -> None:
     with pytest.raises(MapError, match="not a map; left alone"):
         write(photos)
     assert files_of(photos) == {"cat.jpg": b"meow"}
+    (photos / "scene.ttl").write_text("<urn:not> <urn:a> <urn:map> .")
+    with pytest.raises(MapError, match="not a map; left alone"):
+        check_out(photos)
     file = tmp_path / "file"
     file.write_text("x")
     with pytest.raises(MapError, match="is a file"):
         check_out(file)
+
+
+def test_the_current_folder_is_not_swapped_away(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(MapError, match="current folder"):
+        check_out(".")
 
 
 def test_an_empty_folder_is_taken(tmp_path: Path) -> None:
