@@ -53,8 +53,8 @@ def test_things_are_told_by_affordance_size_and_height(
 
 
 def test_what_fits_nothing_is_something_else(network: Network) -> None:
-    odd = network.category_posterior({"EngraveAbility": 0.9}, (1.9, 1.4, 1.5), 1.9)
-    assert best(odd) == "SomethingElse"
+    trough = network.category_posterior({"ContainAbility": 0.95}, (2.4, 0.12, 0.1), 0.5)
+    assert best(trough) == "SomethingElse"
 
 
 def test_a_mug_is_dynamic_and_a_table_static(network: Network) -> None:
