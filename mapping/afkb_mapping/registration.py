@@ -20,10 +20,12 @@ from afkb_mapping.scan_surface import SurfaceMap, SurfacePoints, surface_of
 
 Array = NDArray[np.float64]
 
-ODOMETRY_SHIFT = (0.03, 0.10)
-"""Standard deviation of odometry's shift between views: m, and m per m travelled."""
-ODOMETRY_TURN = (0.02, 0.10, 0.06)
-"""Standard deviation of odometry's turn: rad, rad per rad turned, rad per m travelled."""
+ODOMETRY_SHIFT = 0.10
+"""Standard deviation of odometry's shift, m per m travelled."""
+ODOMETRY_TURN = (0.10, 0.06)
+"""Standard deviation of its turn, rad per rad turned and rad per m travelled."""
+ODOMETRY_FLOOR = (0.03, 0.03, 0.02)
+"""What it may be off (m, m, rad) between two views however little the robot moved."""
 MIN_POINTS = 20
 """A scan with fewer surface points fixes no pose: the laser is blind here."""
 GOOD_OVERLAP = 0.7
@@ -74,42 +76,41 @@ class ScanRegistration:
         self._T_map_odom = T_map_odom.astype(np.float64)
         self._T_odom_base: Array | None = None
         self._covariance = np.zeros((3, 3))
+        self._drift = np.zeros((3, 3))
         self._map = SurfaceMap()
         self._unmatched = 0
 
     def place(self, view: View) -> PlacedPose:
         """Where the view was taken; its scan becomes part of the map that the next ones match."""
         T_predicted = self._T_map_odom @ view.T_odom_base
-        drift = self._odometry_covariance(view.T_odom_base)
+        self._drift = self._drift + self._step_covariance(view.T_odom_base)
         self._T_odom_base = view.T_odom_base
         scan = _surface_in_map(view, T_predicted)
         if len(scan) < MIN_POINTS:
-            self._covariance = self._covariance + drift
-            return PlacedPose(T_predicted, self._covariance, False, 0.0)
+            return PlacedPose(T_predicted, self._covariance + self._drift, False, 0.0)
         if not len(self._map):
             self._map.add(scan)
-            return PlacedPose(T_predicted, self._covariance, True, 1.0)
-        return self._match(scan, T_predicted, drift)
+            return PlacedPose(T_predicted, self._covariance + self._drift, True, 1.0)
+        return self._match(scan, T_predicted)
 
-    def _odometry_covariance(self, T_odom_base: Array) -> Array:
-        """(3, 3) of the step since the last view."""
+    def _step_covariance(self, T_odom_base: Array) -> Array:
+        """(3, 3) of odometry's step since the last view."""
         if self._T_odom_base is None:
             return np.zeros((3, 3))
         T_step = np.linalg.inv(self._T_odom_base) @ T_odom_base
         length, turn = float(np.linalg.norm(T_step[:3, 3])), abs(yaw_of(T_step))
-        shift = ODOMETRY_SHIFT[0] + ODOMETRY_SHIFT[1] * length
-        yaw = ODOMETRY_TURN[0] + ODOMETRY_TURN[1] * turn + ODOMETRY_TURN[2] * length
+        shift = ODOMETRY_SHIFT * length
+        yaw = ODOMETRY_TURN[0] * turn + ODOMETRY_TURN[1] * length
         return np.diag([shift**2, shift**2, yaw**2])
 
-    def _match(self, scan: SurfacePoints, T_predicted: Array, drift: Array) -> PlacedPose:
+    def _match(self, scan: SurfacePoints, T_predicted: Array) -> PlacedPose:
         pivot = T_predicted[:2, 3].copy()
-        # While unmatched, odometry's errors add up; once matched, only the last step's count.
-        prior = drift if self._unmatched == 0 else drift + self._covariance
+        prior = self._drift + np.diag(np.square(ODOMETRY_FLOOR))
         local_map = LocalMap(self._map.near(pivot, RADIUS_M))
         match = self._best_match(scan, local_map, pivot, prior)
         if match is None:
-            return self._go_on_by_odometry(scan, local_map, T_predicted, drift)
-        self._unmatched = 0
+            return self._go_on_by_odometry(scan, local_map, T_predicted)
+        self._unmatched, self._drift = 0, np.zeros((3, 3))
         self._covariance = _inverse(match.information + _inverse(prior))
         T_correction = _about(pivot, match.motion)
         self._T_map_odom = T_correction @ self._T_map_odom
@@ -132,16 +133,15 @@ class ScanRegistration:
         return match if near and match.overlap >= LEAST_OVERLAP else None
 
     def _go_on_by_odometry(
-        self, scan: SurfacePoints, local_map: LocalMap, T_predicted: Array, drift: Array
+        self, scan: SurfacePoints, local_map: LocalMap, T_predicted: Array
     ) -> PlacedPose:
         """Keep odometry's pose; take the scan in only where it can't double a wall, or if lost."""
         self._unmatched += 1
-        self._covariance = self._covariance + drift
         overlap, _ = agreement(scan, local_map)
         _, found = local_map.nearest(scan, REACH_M)
         if found.mean() < 1 - NEW_GROUND or self._unmatched > LOST_VIEWS:
             self._map.add(scan)
-        return PlacedPose(T_predicted, self._covariance, False, overlap)
+        return PlacedPose(T_predicted, self._covariance + self._drift, False, overlap)
 
 
 def _jumps(scan: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array) -> list[Match]:

@@ -15,9 +15,9 @@ Array = NDArray[np.float64]
 
 NORMAL_WEIGHT_M = 0.2
 """Metres that a unit difference of normals counts for: keeps the two sides of a wall apart."""
-RADII_M = (0.6, 0.3, 0.15, 0.15)
+RADII_M = (0.6, 0.3, 0.15)
 """Correspondence radius, coarse to fine; the first must span what odometry errs between views."""
-STEPS_PER_RADIUS = 8
+STEPS_PER_RADIUS = 10
 RANGE_SIGMA_M = 0.02
 """How far a beam's end strays from the mapped surface: range noise and cell averaging together."""
 EFFECTIVE_BEAMS = 40.0
