@@ -18,6 +18,9 @@ HULL_MARGIN_CELLS = 1
 LARGE_SUPPORT_M2 = 0.12
 MAX_SUPPORTS = 62
 WALL_BIT = np.uint64(63)
+ON_WALL = -2
+FLOOR_M = 0.03
+WALL_HEIGHT_M, WALL_LENGTH_M = 1.0, 1.0
 WALL_RMS_M = 0.05
 WALL_CELLS = 3
 MAX_SLOPE = 0.05
@@ -72,19 +75,23 @@ class Supports:
         chosen = sorted(chosen[:MAX_SUPPORTS], key=lambda d: -float(d.position_xyz[2]))
         heights = np.array([float(d.position_xyz[2]) for d in chosen])
         areas = np.array([d.measures.get("area", 0.0) for d in chosen])
-        raster, origin = _raster(chosen)
+        raster, origin = _raster(chosen, earlier)
         for d in earlier:
-            if d.segment_xy is not None and d.measures.get("rms", 0.0) < WALL_RMS_M:
+            if d.segment_xy is not None and _is_wall(d):
                 _mark_wall(raster, origin, d.segment_xy)
         return cls(tuple(chosen), heights, areas >= LARGE_SUPPORT_M2, raster, origin)
 
 
-def _raster(chosen: Sequence[Detection]) -> tuple[NDArray[np.uint64], NDArray[np.float64]]:
-    if not chosen:
+def _raster(
+    chosen: Sequence[Detection], earlier: Sequence[Detection]
+) -> tuple[NDArray[np.uint64], NDArray[np.float64]]:
+    """Supports' hulls as bits of a grid that reaches as far as anything that was detected."""
+    reach = [d.footprint_xy for d in earlier if len(d.footprint_xy)]
+    if not reach:
         return np.zeros((1, 1), np.uint64), np.zeros(2)
     pad = (HULL_MARGIN_CELLS + 2) * RASTER_M
-    origin = np.min([d.footprint_xy.min(axis=0) for d in chosen], axis=0) - pad
-    far = np.max([d.footprint_xy.max(axis=0) for d in chosen], axis=0) + pad
+    origin = np.min([xy.min(axis=0) for xy in reach], axis=0) - pad
+    far = np.max([xy.max(axis=0) for xy in reach], axis=0) + pad
     shape = np.ceil((far - origin) / RASTER_M).astype(int) + 1
     raster = np.zeros((int(shape[0]), int(shape[1])), np.uint64)
     kernel = np.ones((2 * HULL_MARGIN_CELLS + 1,) * 2, np.uint8)
@@ -100,6 +107,13 @@ def _raster(chosen: Sequence[Detection]) -> tuple[NDArray[np.uint64], NDArray[np
             np.uint64
         ) << np.uint64(k)
     return raster, origin
+
+
+def _is_wall(bound: Detection) -> bool:
+    """Whether an upright plane is one plane, and larger than the side of a bin or a carton."""
+    length = bound.measures.get("length", 0.0)
+    large = length >= WALL_LENGTH_M or bound.measures.get("height", 0.0) >= WALL_HEIGHT_M
+    return large and bound.measures.get("rms", 0.0) < WALL_RMS_M
 
 
 def _mark_wall(
@@ -182,7 +196,8 @@ def label_things(
     low_m: float,
     high_m: float,
 ) -> tuple[NDArray[np.int16], NDArray[np.float32]]:
-    """Support, from 1, that each pixel's point stands on: (H, W); 0 none, -1 the support itself.
+    """Support, from 1, that each pixel's point stands on: (H, W); 0 none, -1 the support itself,
+    ON_WALL an upright plane.
 
     With it, how high the point is over that support, m: (H, W) float32.
 
@@ -199,10 +214,16 @@ def label_things(
                 continue
             x, y = points[v, u, 0] - origin_xy[0], points[v, u, 1] - origin_xy[1]
             i, j = int(x / RASTER_M), int(y / RASTER_M)
+            if points[v, u, 2] < FLOOR_M:
+                out[v, u] = -1
+                continue
             if not (0 <= i < raster.shape[0] and 0 <= j < raster.shape[1]):
                 continue
             bits = raster[i, j]
-            if bits == 0 or bits >> WALL_BIT != 0:
+            if bits >> WALL_BIT != 0:
+                out[v, u] = ON_WALL
+                continue
+            if bits == 0:
                 continue
             h = points[v, u, 2]
             rise = abs(slope[0] * u + slope[1] * v + slope[2])

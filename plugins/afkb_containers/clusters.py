@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import StrEnum
 
 import cv2
 import numpy as np
@@ -16,6 +17,14 @@ from afkb_surfaces.noise import depth_sigma
 MAX_GRID_CELLS = 4_000_000
 
 
+class Stand(StrEnum):
+    """What a thing stands on."""
+
+    ON_SUPPORT = "on_support"
+    HIDDEN = "hidden"
+    ON_FLOOR = "on_floor"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Cluster:
     """Pixels of one thing: coordinates, depth (m) and points in the map frame, all (N, …).
@@ -23,12 +32,19 @@ class Cluster:
     `support_height_m` is None where what it stands on isn't seen.
     """
 
+    stand: Stand
+
     u: NDArray[np.int64]
     v: NDArray[np.int64]
     depth_m: NDArray[np.float32]
     points: NDArray[np.float64]
-    shape: tuple[int, int]
+    shape: tuple[int, ...]
     support_height_m: float | None
+
+    @property
+    def lowest_m(self) -> float:
+        """Height of the lowest part in sight, strays left out, m."""
+        return float(np.percentile(self.points[:, 2], 2))
 
     @property
     def sigma_m(self) -> float:
@@ -86,8 +102,9 @@ def clusters_from_above(
         member = order[begin:end]
         if len(member) >= min_pixels and tall[member].sum() >= min_pixels // 2:
             v, u = np.divmod(flat[member], depth_m.shape[1])
-            shape = (depth_m.shape[0], depth_m.shape[1])
-            yield Cluster(u, v, depth_m[v, u], xyz[member], shape, support_height_m)
+            yield Cluster(
+                Stand.ON_SUPPORT, u, v, depth_m[v, u], xyz[member], depth_m.shape, support_height_m
+            )
 
 
 def _names_from_above(ij: NDArray[np.int64], shape: tuple[int, int]) -> NDArray[np.int32]:

@@ -1,4 +1,4 @@
-"""Things whose support is out of sight, behind what stands before it (paper Fig. 2, row 1)."""
+"""Things off every support: on one that is out of sight (paper Fig. 2, row 1), or on the floor."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from afkb_containers.clusters import Cluster
+from afkb_containers.clusters import Cluster, Stand
 from afkb_surfaces.noise import depth_sigma
 
 NEAREST_FLOOR_M = 0.25
@@ -17,17 +17,24 @@ HIGHEST_M = 1.8
 FARTHEST_M = 3.5
 """Beyond this, noise hides an opening and makes one of what it isn't."""
 CELL_M = 0.015
-WIDEST_M = 0.6
+WIDEST_M = 0.75
 TALLEST_M = 0.5
+BIN_M = (0.15, 0.85)
+"""Lowest and highest rim of what stands on the floor: bins, baskets, boxes."""
+FLOOR_M = 0.04
 HIDDEN_SHARE = 0.6
 """Share of a thing's lower outline that something nearer must cover."""
 
 
 @njit(cache=True)
 def _candidates(
-    depth_m: NDArray[np.float32], points: NDArray[np.float32], labels: NDArray[np.int16]
+    depth_m: NDArray[np.float32],
+    points: NDArray[np.float32],
+    labels: NDArray[np.int16],
+    low_m: float,
+    high_m: float,
 ) -> NDArray[np.int64]:
-    """Flat indexes of pixels off every support, above seats' legs and within range."""
+    """Flat indexes of pixels off every support and wall, between two heights, within range."""
     rows, cols = depth_m.shape
     out = np.empty(rows * cols, np.int64)
     n = 0
@@ -35,7 +42,7 @@ def _candidates(
         for u in range(cols):
             z = depth_m[v, u]
             h = points[v, u, 2]
-            if 0 < z < FARTHEST_M and labels[v, u] == 0 and NEAREST_FLOOR_M < h < HIGHEST_M:
+            if 0 < z < FARTHEST_M and labels[v, u] == 0 and low_m < h < high_m:
                 out[n] = v * cols + u
                 n += 1
     return out[:n]
@@ -78,7 +85,31 @@ def things_on_hidden_supports(
     min_pixels: int,
 ) -> Iterator[Cluster]:
     """Compact bodies that stand apart, seen from above, and whose foot something nearer covers."""
-    flat = _candidates(depth_m, points, labels)
+    flat = _candidates(depth_m, points, labels, NEAREST_FLOOR_M, HIGHEST_M)
+    for u, v, xyz in _apart_from_above(flat, points, min_pixels):
+        if np.ptp(xyz[:, 2]) > TALLEST_M:
+            continue
+        if _hidden_below(u, v, depth_m, int(u.min()), int(u.max()) + 1) >= HIDDEN_SHARE:
+            yield Cluster(Stand.HIDDEN, u, v, depth_m[v, u], xyz, depth_m.shape, None)
+
+
+def things_on_the_floor(
+    depth_m: NDArray[np.float32],
+    points: NDArray[np.float32],
+    labels: NDArray[np.int16],
+    min_pixels: int,
+) -> Iterator[Cluster]:
+    """Compact bodies that stand apart on the floor, as bins and baskets do."""
+    flat = _candidates(depth_m, points, labels, FLOOR_M, BIN_M[1] + 0.1)
+    for u, v, xyz in _apart_from_above(flat, points, min_pixels):
+        if BIN_M[0] < np.percentile(xyz[:, 2], 98) < BIN_M[1]:
+            yield Cluster(Stand.ON_FLOOR, u, v, depth_m[v, u], xyz, depth_m.shape, 0.0)
+
+
+def _apart_from_above(
+    flat: NDArray[np.int64], points: NDArray[np.float32], min_pixels: int
+) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]]:
+    """Pixels (u, v) and points (N, 3) of what is narrow enough and alone, seen from above."""
     if len(flat) < min_pixels:
         return
     xyz = points.reshape(-1, 3)[flat]
@@ -93,10 +124,7 @@ def things_on_hidden_supports(
     of = parts[ij[:, 0], ij[:, 1]]
     pixels = np.bincount(of, minlength=count)
     for k in np.flatnonzero((wide <= WIDEST_M) & (pixels >= min_pixels)):
-        member = np.flatnonzero(of == k)
-        if k == 0 or np.ptp(xyz[member, 2]) > TALLEST_M:
-            continue
-        v, u = np.divmod(flat[member], depth_m.shape[1])
-        if _hidden_below(u, v, depth_m, int(u.min()), int(u.max()) + 1) >= HIDDEN_SHARE:
-            shape = (depth_m.shape[0], depth_m.shape[1])
-            yield Cluster(u, v, depth_m[v, u], xyz[member].astype(np.float64), shape, None)
+        if k > 0:
+            member = np.flatnonzero(of == k)
+            v, u = np.divmod(flat[member], points.shape[1])
+            yield u, v, xyz[member].astype(np.float64)

@@ -20,11 +20,14 @@ class ContainerSettings:
     - `depth_m`: how deep an opening is; `solid_height_m`, `solid_thickness_m`: of a closed body,
       which keep books, frames, screens and game controllers out.
     - `core_m`: what rises less over its support, a magazine or a cloth, joins nothing.
+    - `bin_size_m`, `bin_depth_m`: the same as `size_m` and `depth_m` for what stands on the floor.
     - `above_m`: lowest and highest point of a thing over its support that is looked at.
     """
 
     size_m: Limits = (0.035, 0.05, 0.35, 0.60)
     depth_m: Limits = (0.008, 0.025, math.inf, math.inf)
+    bin_size_m: Limits = (0.12, 0.18, 0.65, 0.85)
+    bin_depth_m: Limits = (0.05, 0.10, math.inf, math.inf)
     solid_height_m: Limits = (0.060, 0.075, 0.35, 0.50)
     solid_thickness_m: Limits = (0.018, 0.030, math.inf, math.inf)
     core_m: float = 0.032

@@ -1,0 +1,64 @@
+"""What a view's pixels belong to, worked out once for every kind of container."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import Detection, View
+from afkb_containers.above import Supports, fit_supports, label_things, map_points
+from afkb_containers.settings import ContainerSettings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """A view, labelled.
+
+    - `points`: (H, W, 3) float32, map frame. `labels`: (H, W), see `label_things`.
+    - `overs_m`: (H, W), height of a point over the support that it is labelled with.
+    - `intrinsics`: fx, fy, cx, cy.
+    """
+
+    depth_m: NDArray[np.float32]
+    intrinsics: NDArray[np.float64]
+    T_map_camera: NDArray[np.float64]
+    points: NDArray[np.float32]
+    supports: Supports
+    labels: NDArray[np.int16]
+    overs_m: NDArray[np.float32]
+
+    @property
+    def camera_xyz(self) -> NDArray[np.float64]:
+        """Where the camera is, map frame."""
+        return self.T_map_camera[:3, 3]
+
+    @classmethod
+    def of(
+        cls, view: View, earlier: Sequence[Detection], settings: ContainerSettings
+    ) -> Scene | None:
+        """The labelled view, or None where it has no depth."""
+        if view.depth_m is None or view.camera is None:
+            return None
+        c, T = view.camera, view.T_map_camera
+        intrinsics = np.array([c.fx, c.fy, c.cx, c.cy])
+        points = map_points(view.depth_m, intrinsics, T)
+        supports = Supports.of(earlier)
+        grid = (supports.raster, supports.origin_xy)
+        planes = fit_supports(view.depth_m, points, supports.heights_m, *grid)
+        slope = height_per_depth(intrinsics, T)
+        labels, overs = label_things(
+            view.depth_m, points, planes, supports.large, *grid, slope, *settings.above_m
+        )
+        return cls(view.depth_m, intrinsics, T, points, supports, labels, overs)
+
+
+def height_per_depth(
+    intrinsics: NDArray[np.float64], T_map_camera: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Coefficients (3,) of (u, v, 1) that give a pixel's change of height per metre of depth."""
+    fx, fy, cx, cy = intrinsics
+    a, b, c = T_map_camera[2, :3]
+    return np.array([a / fx, b / fy, c - a * cx / fx - b * cy / fy])

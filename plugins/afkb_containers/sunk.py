@@ -1,0 +1,129 @@
+"""Containers let into a surface: basins and tubs, seen as a hole in their rim's plane."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from afkb.flow import Detection
+from afkb_containers.scene import Scene
+from afkb_surfaces.describe import box_around
+from afkb_surfaces.noise import depth_sigma
+
+CELL_M = 0.02
+LEAST_DEPTH_M = 0.05
+LEAST_AREA_M2 = 0.03
+LEAST_SUPPORT_M2 = 0.02
+ABOVE_FLOOR_M = 0.05
+RING_CELLS = 4
+RING = (0.60, 0.85)
+"""Share of the way around a hole on which there must be rim: none below, fully sure above."""
+
+
+@njit(cache=True)
+def _holes(
+    depth_m: NDArray[np.float32],
+    points: NDArray[np.float32],
+    camera_xyz: NDArray[np.float64],
+    height_m: float,
+    hull: NDArray[np.uint8],
+    origin_xy: NDArray[np.float64],
+) -> NDArray[np.float32]:
+    """Deepest point seen through each square of a plane's hull (X, Y), m; 0 where none is."""
+    deepest = np.zeros(hull.shape, np.float32)
+    drop = camera_xyz[2] - height_m
+    rows, cols = depth_m.shape
+    for v in range(rows):
+        for u in range(cols):
+            z = depth_m[v, u]
+            h = points[v, u, 2]
+            under = height_m - h
+            if z <= 0 or under < LEAST_DEPTH_M + 2.0 * depth_sigma(z) or h < ABOVE_FLOOR_M:
+                continue
+            t = drop / (camera_xyz[2] - h)
+            dx, dy = points[v, u, 0] - camera_xyz[0], points[v, u, 1] - camera_xyz[1]
+            i = int((camera_xyz[0] + t * dx - origin_xy[0]) / CELL_M)
+            j = int((camera_xyz[1] + t * dy - origin_xy[1]) / CELL_M)
+            a = int((points[v, u, 0] - origin_xy[0]) / CELL_M)
+            b = int((points[v, u, 1] - origin_xy[1]) / CELL_M)
+            x, y = hull.shape
+            if not (0 <= i < x and 0 <= j < y and 0 <= a < x and 0 <= b < y):
+                continue
+            if hull[i, j] and hull[a, b]:
+                deepest[i, j] = max(deepest[i, j], under)
+    return deepest
+
+
+def sunk_containers(scene: Scene, detector: str) -> Iterator[Detection]:
+    """Hollows in the supports of a view that are deep, wide, and ringed by their support."""
+    for support in scene.supports.detections:
+        height = float(support.position_xyz[2])
+        if scene.camera_xyz[2] - height < 0.05 or height < ABOVE_FLOOR_M + LEAST_DEPTH_M:
+            continue
+        if len(support.footprint_xy) * CELL_M**2 < LEAST_SUPPORT_M2:
+            continue
+        yield from _in_support(scene, support, height, detector)
+
+
+def _in_support(
+    scene: Scene, support: Detection, height_m: float, detector: str
+) -> Iterator[Detection]:
+    origin = support.footprint_xy.min(axis=0) - CELL_M * (RING_CELLS + 2.5)
+    ij = np.floor((support.footprint_xy - origin) / CELL_M).astype(np.int32)
+    top = np.zeros(tuple((ij.max(axis=0) + RING_CELLS + 3).tolist()), np.uint8)
+    top[ij[:, 0], ij[:, 1]] = 1
+    hull = np.zeros_like(top)
+    cv2.fillConvexPoly(hull, cv2.convexHull(ij[:, ::-1]), 1)
+    hull[top > 0] = 0
+    deepest = _holes(
+        scene.depth_m, scene.points, scene.camera_xyz, height_m, hull, origin
+    )
+    open_ = cv2.morphologyEx((deepest > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3)))
+    count, parts, stats, _ = cv2.connectedComponentsWithStats(open_, connectivity=4)
+    for k in range(1, count):
+        if stats[k, cv2.CC_STAT_AREA] * CELL_M**2 >= LEAST_AREA_M2:
+            hole = parts == k
+            ring = _ring_share(hole, top)
+            sure = min(1.0, (ring - RING[0]) / (RING[1] - RING[0]))
+            if sure > 0:
+                yield _detection(hole, deepest, origin, height_m, sure, ring, support, detector)
+
+
+def _ring_share(hole: NDArray[np.bool_], top: NDArray[np.uint8]) -> float:
+    """Share of a hole's outline next to which, going outwards, its support is seen."""
+    kernel = np.ones((3, 3), np.uint8)
+    outline = cv2.dilate(hole.astype(np.uint8), kernel) - hole.astype(np.uint8)
+    near = cv2.dilate(top, np.ones((2 * RING_CELLS + 1,) * 2, np.uint8))
+    return float((outline & near).sum() / max(int(outline.sum()), 1))
+
+
+def _detection(
+    hole: NDArray[np.bool_],
+    deepest: NDArray[np.float32],
+    origin: NDArray[np.float64],
+    rim_m: float,
+    sure: float,
+    ring: float,
+    support: Detection,
+    detector: str,
+) -> Detection:
+    footprint = (np.argwhere(hole) + 0.5) * CELL_M + origin
+    depth = float(np.percentile(deepest[hole & (deepest > 0)], 95))
+    box = box_around(footprint, rim_m, CELL_M, depth)
+    return Detection(
+        detector=detector,
+        affordances={"ContainAbility": 0.9 * sure},
+        box=box,
+        position_xyz=np.array(box.center_xyz),
+        covariance_xyz=np.diag([4e-4, 4e-4, 4e-4]),
+        footprint_xy=footprint,
+        n_pixels=int(hole.sum()),
+        range_m=support.range_m,
+        image_box=support.image_box,
+        cut_by_image=support.cut_by_image,
+        measures={"rim_height": rim_m, "height": depth, "depth": depth, "rim_share": ring},
+    )
