@@ -34,6 +34,10 @@ class Network:
             kb, ObjectNetwork.compile(kb), RoomNetwork.compile(kb), RelationshipNetwork.compile(kb)
         )
 
+    def known(self, affordances: Mapping[str, float]) -> dict[str, float]:
+        """Those affordances that the ontology has: a stranger's detector may report others."""
+        return {f: p for f, p in affordances.items() if f in self.knowledge_base.features}
+
     def category_posterior(
         self,
         affordances: Mapping[str, float],

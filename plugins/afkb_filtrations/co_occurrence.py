@@ -60,7 +60,9 @@ class CoOccurrencePredictor:
         scales = list(self._knowledge_base.scales)
         scale = self._knowledge_base.scale_of(_surface(detection))
         top = top_height(detection, rule.feature)
-        classes = network.evidence_of(_known(network, detection), detection.box.size_xyz, top)
+        classes = network.evidence_of(
+            network.known(detection.affordances), detection.box.size_xyz, top
+        )
         larger = scales.index(rule.predicted_scale) > scales.index(scale)
         return larger and rule.evidence_class in classes
 
@@ -104,16 +106,11 @@ class CoOccurrencePredictor:
 def _probability(network: Network, rule: CoOccurrence, detection: Detection) -> float:
     """By the rule, over what the detection may be."""
     category = network.category_posterior(
-        _known(network, detection),
+        network.known(detection.affordances),
         detection.box.size_xyz,
         top_height(detection, rule.feature),
     )
     return network.relations.co_occurrence(rule.name, category)
-
-
-def _known(network: Network, detection: Detection) -> dict[str, float]:
-    """The affordances that the ontology has; a stranger's detector may report others."""
-    return {f: p for f, p in detection.affordances.items() if f in network.objects.implied}
 
 
 def _surface(detection: Detection) -> tuple[float, float, float]:

@@ -191,3 +191,8 @@ def test_a_posterior_takes_under_a_millisecond(network: Network) -> None:
     for _ in range(200):
         network.category_posterior({"SupportAbility": 0.9}, (1.2, 0.8, 0.7), 0.7)
     assert (time.process_time() - start) / 200 < 1e-3
+
+
+def test_affordances_that_the_ontology_lacks_can_be_left_out(network: Network) -> None:
+    reported = {"HoverAbility": 0.9, "ContainAbility": 0.8}
+    assert network.known(reported) == {"ContainAbility": 0.8}
