@@ -68,3 +68,13 @@ def test_the_reference_lists_every_term_and_key(stored: StoredMap) -> None:
     keys = set(info_json(stored)) | set(rooms_json(stored)[0])
     keys |= set(node_json(stored, stored.instances("ObservedEntity")[0], "ObservedEntity"))
     assert not {key for key in keys if f'"{key}"' not in REFERENCE and f"`{key}`" not in REFERENCE}
+
+
+def test_the_ontology_declares_every_term_of_a_scene(stored: StoredMap) -> None:
+    sparql = """
+        SELECT DISTINCT ?term WHERE {
+          GRAPH ?map { { ?s ?term ?o } UNION { ?s a ?term } }
+          FILTER (?map != <urn:afkb:ontology> && STRSTARTS(STR(?term), STR(afn:)))
+          FILTER NOT EXISTS { GRAPH <urn:afkb:ontology> { ?term skos:definition ?definition } }
+        }"""
+    assert query([stored], sparql, KnowledgeBase().files).cells() == []
