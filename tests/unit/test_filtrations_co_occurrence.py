@@ -26,7 +26,7 @@ def test_a_chair_predicts_a_larger_support_near_it(predictor: CoOccurrencePredic
     assert (found.relation, found.order, found.anchors) == (Relation.NEAR, 2, (0,))
     assert found.affordances == {"SupportAbility": 1.0}
     assert found.scale == "Large"
-    assert found.probability == pytest.approx(0.65, abs=0.05)
+    assert found.probability == pytest.approx(0.65)
     assert found.axiom == "https://w3id.org/afkb/afnet#LargerSupportNearSeat"
     assert found.top_height_m is not None
     assert found.top_height_m[0] < 0.73 < found.top_height_m[1]
