@@ -20,7 +20,7 @@ _SUFFIX = ".world.yaml"
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML whose `on` is a word: only true and false are truth values, as in YAML 1.2."""
+    """YAML whose `on` is a word and `1e-3` a number, as in YAML 1.2."""
 
 
 _BOOL = "tag:yaml.org,2002:bool"
@@ -28,6 +28,11 @@ _Loader.yaml_implicit_resolvers = {
     first: [(tag, pattern) for tag, pattern in resolvers if tag != _BOOL]
     for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
 }
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float",
+    re.compile(r"^[-+]?(?:\d+\.?\d*|\.\d+)[eE][-+]?\d+$"),
+    list("-+.0123456789"),
+)
 _Loader.add_implicit_resolver(_BOOL, re.compile(r"^(?:true|false)$"), list("tf"))
 
 

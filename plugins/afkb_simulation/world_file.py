@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
-from afkb_simulation.polygons import XY, crosses_itself, signed_area
+from afkb_simulation.polygons import crosses_itself, signed_area
 from afkb_simulation.shapes import SHAPES, Shape
 
 MESH = "mesh"
@@ -15,7 +15,19 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]*$")]
 Category = Annotated[str, Field(pattern=r"^[A-Z][A-Za-z0-9]*$")]
 Positive = Annotated[float, Field(gt=0, le=100)]
 NotNegative = Annotated[float, Field(ge=0, le=100)]
+Coordinate = Annotated[float, Field(ge=-200, le=200)]
+Degrees = Annotated[float, Field(ge=-3600, le=3600)]
+XY = tuple[Coordinate, Coordinate]
 Probability = Annotated[float, Field(ge=0, le=1)]
+
+
+def _ordered(limits: tuple[float, float]) -> tuple[float, float]:
+    if limits[0] >= limits[1]:
+        raise ValueError(f"nearest {limits[0]} is not below farthest {limits[1]}; swap them")
+    return limits
+
+
+Limits = Annotated[tuple[NotNegative, Positive], AfterValidator(_ordered)]
 
 
 class _Strict(BaseModel):
@@ -27,7 +39,7 @@ class RoomFile(_Strict):
 
     name: Name
     category: Category
-    rectangle: tuple[float, float, float, float] | None = None
+    rectangle: tuple[Coordinate, Coordinate, Coordinate, Coordinate] | None = None
     polygon: tuple[XY, ...] | None = None
     wall_height: Annotated[float, Field(ge=0.5, le=20)] = 2.5
 
@@ -35,8 +47,11 @@ class RoomFile(_Strict):
     def _has_one_outline(self) -> RoomFile:
         if (self.rectangle is None) == (self.polygon is None):
             raise ValueError("give either a rectangle [x0, y0, x1, y1] or a polygon")
-        if len(self.corners) < 3 or abs(signed_area(self.corners)) < 0.1:
-            raise ValueError("the outline encloses no area; give at least three corners, in order")
+        polygon = self.polygon or ()
+        if self.polygon is not None and len(set(polygon)) != max(3, len(polygon)):
+            raise ValueError("the outline needs at least three corners, each given once")
+        if abs(signed_area(self.corners)) < 0.1:
+            raise ValueError("the outline encloses no area; give its corners in order")
         if crosses_itself(self.corners):
             raise ValueError("the outline crosses itself; give the corners in order around it")
         return self
@@ -75,7 +90,7 @@ class ThingFile(_Strict):
     shape: str
     category: Category
     at: XY = (0.0, 0.0)
-    yaw_deg: float = 0.0
+    yaw_deg: Degrees = 0.0
     size: tuple[Positive, Positive, Positive] | None = None
     on: Name | None = None
     level: Annotated[int, Field(ge=0)] = 0
@@ -130,7 +145,7 @@ class CameraFile(_Strict):
     width: Annotated[int, Field(ge=16, le=4096)] = 640
     height: Annotated[int, Field(ge=16, le=4096)] = 480
     fov_deg: Annotated[float, Field(gt=5, lt=150)] = 62.7
-    forward_m: float = 0.1
+    forward_m: Coordinate = 0.1
     height_m: Positive = 1.2
     pitch_down_deg: Annotated[float, Field(ge=-80, le=80)] = 15.0
 
@@ -140,9 +155,9 @@ class LaserFile(_Strict):
 
     beams: Annotated[int, Field(ge=2, le=10000)] = 720
     fov_deg: Annotated[float, Field(gt=1, le=360)] = 360.0
-    forward_m: float = 0.0
+    forward_m: Coordinate = 0.0
     height_m: Positive = 0.25
-    range: tuple[NotNegative, Positive] = (0.05, 12.0)
+    range: Limits = (0.05, 12.0)
 
 
 class RobotFile(_Strict):
@@ -171,7 +186,7 @@ class SensorNoise(_Strict):
     baseline_m: Positive = 0.075
     edge_dropout: Probability = 0.5
     grazing_deg: Annotated[float, Field(ge=0, le=90)] = 8.0
-    range: tuple[NotNegative, Positive] = (0.4, 6.0)
+    range: Limits = (0.4, 6.0)
     laser_m: NotNegative = 0.01
 
 
@@ -188,16 +203,16 @@ class WaypointFile(_Strict):
 
     name: Name
     at: XY
-    yaw_deg: float
+    yaw_deg: Degrees
     via: tuple[XY, ...] = ()
-    looks_deg: Annotated[tuple[float, ...], Field(min_length=1)] = (0.0,)
+    looks_deg: Annotated[tuple[Degrees, ...], Field(min_length=1)] = (0.0,)
 
 
 class TourFile(_Strict):
     """The robot's tour; consecutive frames are at most `step_m` and `turn_deg` apart."""
 
-    step_m: Annotated[float, Field(gt=0.01, le=10)] = 0.45
-    turn_deg: Annotated[float, Field(gt=1, le=180)] = 28.0
+    step_m: Annotated[float, Field(ge=0.1, le=10)] = 0.45
+    turn_deg: Annotated[float, Field(ge=5, le=180)] = 28.0
     frame_s: Positive = 0.5
     waypoints: Annotated[tuple[WaypointFile, ...], Field(min_length=1)]
 

@@ -36,6 +36,11 @@ def test_on_is_a_word_not_a_truth_value(tmp_path: Path) -> None:
     assert read_world(_world(tmp_path, SMALL)).things[1].on == "table"
 
 
+def test_numbers_may_have_exponents(tmp_path: Path) -> None:
+    text = SMALL.replace("at: [0.1, 0]", "at: [1e-1, -2.5E-2]")
+    assert read_world(_world(tmp_path, text)).things[1].at == (0.1, -0.025)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
@@ -57,10 +62,14 @@ def test_on_is_a_word_not_a_truth_value(tmp_path: Path) -> None:
         ("shape: mug", "shape: mug, file: mug.obj", "a mesh takes a `file`"),
         ("shape: mug", "shape: mesh, file: no.obj", "(mug).file: no mesh file"),
         ("at: [1, 2]", "at: [3, 2.1]", "runs into 'table' at (3.00, 2.10)"),
+        ("at: [1, 2]", "at: [1, 1e9]", "at[1]: input should be less than or equal to 200"),
         ("name: mug", "name: table", "two are named 'table'"),
         ("at: [3, 2]", "at: [9, 2]", "things (table).at: in no room"),
         ("at: [1, 2]", "at: [9, 2]", "leaves the rooms at (9.00, 2.00)"),
-        ("rectangle: [0, 0, 4, 4]", "polygon: [[0, 0], [1, 1]]", "encloses no area"),
+        ("rectangle: [0, 0, 4, 4]", "polygon: [[0, 0], [1, 1]]", "at least three corners"),
+        ("rectangle: [0, 0, 4, 4]", "polygon: []", "at least three corners"),
+        ("rectangle: [0, 0, 4, 4]", "polygon: [[0, 0], [1, 1], [2, 2]]", "encloses no area"),
+        ("things:", "sensor_noise: {range: [6, 1]}\nthings:", "nearest 6.0 is not below"),
         ("[0, 0, 4, 4]", "[0, 0, 4, 4], polygon: [[0, 0]]", "either a rectangle"),
         (
             "rectangle: [0, 0, 4, 4]",
@@ -120,9 +129,10 @@ def test_every_bundled_world_reads() -> None:
         assert len(open_world(f"world:{name}")) > 0
 
 
-def test_the_documented_example_is_sensed(tmp_path: Path) -> None:
+def test_the_documented_example_is_a_bundled_world_and_is_sensed() -> None:
     text = DOCS.read_text(encoding="utf-8").split("```yaml\n")[1].split("```")[0]
-    uri = _world(tmp_path, text)
+    uri = "world:two_rooms"
+    assert bundled_worlds()["two_rooms"].read_text(encoding="utf-8") == text
     truth = load_truth(uri)
     assert truth.things["box"].on == "shelf"
     assert truth.rooms["hall"].area == pytest.approx(3.9 * 3 + 2)
