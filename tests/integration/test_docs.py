@@ -1,8 +1,9 @@
 """Whatever the documents tell people to type works.
 
-- `bash`: run, in a folder that holds `demo-map` (made by `afkb demo`), `examples`, and, where the
-  recordings are there, `my-recording` (some frames of one) and the folder that AFKB_DATA names.
-- `sh`: setting up a machine; not run, but what it names must exist.
+- `bash`: run, in a folder that holds `demo-map` (made by `afkb demo`; `kitchen` is the same),
+  `examples`, and, where the recordings are there, `my-recording` (some frames of one) and the
+  folder that AFKB_DATA names.
+- `sh`: setting up a machine, or an evaluation of minutes; not run, but what it names must exist.
 - `python`: run, all blocks of a document one after the other.
 - `sparql`: asked of the demo's map.
 """
@@ -43,6 +44,7 @@ def desks(
     for document in sorted({b.document for b in blocks("bash", "python")}):
         desk = tmp_path_factory.mktemp("desk")
         shutil.copytree(demo_folder / "demo-map", desk / "demo-map")
+        (desk / "kitchen").symlink_to("demo-map")
         (desk / "examples").symlink_to(ROOT / "examples")
         (desk / "docs").symlink_to(ROOT / "docs")
         if recordings is not None:
@@ -105,9 +107,11 @@ def test_queries_are_answered(block: Block, demo_folder: Path) -> None:
 
 
 @pytest.mark.parametrize("block", blocks("sh"), ids=lambda b: b.id)
-def test_what_setting_up_names_is_there(block: Block) -> None:
+def test_what_is_named_without_being_run_is_there(block: Block, recordings: Path | None) -> None:
     for line in block.text.strip().splitlines():
-        command, *words = line.split()
+        command, *words = line.replace('"', "").split()
+        for path in (w.removeprefix("$AFKB_DATA/") for w in words if w.startswith("$AFKB_DATA/")):
+            assert recordings is None or (recordings / path).exists(), line
         if command == "make":
             subprocess.run(["make", "-n", *words], cwd=ROOT, check=True, capture_output=True)
         elif command == "sudo":
@@ -117,8 +121,10 @@ def test_what_setting_up_names_is_there(block: Block) -> None:
         elif command == "pip":
             paths = [w for w in words if "/" in w or w.startswith(".")]
             assert all((ROOT / p.split("[")[0]).exists() for p in paths), line
+        elif command == "python":
+            assert (ROOT / words[1].replace(".", "/")).with_suffix(".py").exists(), line
         else:
-            assert command in {"cd", "git", "source", ".venv/bin/afkb"}, line
+            assert command in {"afkb", "cd", "git", "source", ".venv/bin/afkb"}, line
 
 
 @pytest.mark.parametrize(("document", "target"), links())

@@ -61,7 +61,7 @@ def test_source_of_a_recording(name: str, data_dir: Path) -> None:
 
 
 def test_source_of_the_bundled_world() -> None:
-    testing.check_source(HOST.open_source("world:home"), at_most=3)
+    testing.check_source(HOST.open_source("world:paper_home"), at_most=3)
 
 
 def test_detectors_find_the_sample_table() -> None:

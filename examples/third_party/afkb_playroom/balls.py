@@ -76,7 +76,7 @@ class BallDetector:
         x, y, z = (float(v) for v in sphere.center)
         return Detection(
             detector=self.name,
-            affordances={"RollAbility3D": 0.95},
+            affordances={"RollAbility3D": 0.99},
             box=OrientedBox((x, y, z), (2 * sphere.radius,) * 3),
             position_xyz=sphere.center,
             covariance_xyz=np.eye(3) * _noise(range_m) ** 2,
