@@ -68,7 +68,7 @@ def read_world(uri: str) -> WorldFile:
 def _parsed(text: str, path: Path) -> Mapping[str, Any]:
     try:
         data = yaml.load(text, Loader=_Loader)
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
         mark = getattr(error, "problem_mark", None)
         where = f" line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         problem = getattr(error, "problem", None) or "unreadable"
@@ -81,11 +81,18 @@ def _parsed(text: str, path: Path) -> Mapping[str, Any]:
 def _validated(data: Mapping[str, Any], path: Path) -> WorldFile:
     try:
         # JSON mode: strict about numbers and words, yet takes YAML's lists for tuples
-        return WorldFile.model_validate_json(json.dumps(data, default=str))
+        return WorldFile.model_validate_json(_as_json(data, path))
     except ValidationError as error:
         found = error.errors()[0]
         key = _key_path(found["loc"], data)
         raise SourceError(f"{path}: {key}: {_mend(found['type'], found['msg'])}") from error
+
+
+def _as_json(data: Mapping[str, Any], path: Path) -> str:
+    try:
+        return json.dumps(data, default=str)
+    except (ValueError, TypeError, RecursionError) as error:
+        raise SourceError(f"{path}: holds itself or an odd key ({error}); write it out") from error
 
 
 def _key_path(loc: tuple[int | str, ...], data: object) -> str:

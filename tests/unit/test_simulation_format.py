@@ -95,7 +95,18 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path: Path, old: str, new: str, s
     assert "\n" not in message
 
 
-@pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"", b"- 1\n", b"42"])
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"\xff\xfe\x00",
+        b"",
+        b"- 1\n",
+        b"42",
+        b"&a {name: *a}",
+        b"[" * 20000,
+        b"name: 2020-99-99",
+    ],
+)
 def test_what_is_no_world_is_refused(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "bad.world.yaml"
     path.write_bytes(content)
