@@ -127,7 +127,8 @@ class Room:
 class Edge:
     """An edge with its distance (m) and bearing (rad, map frame) from `source` to `target`.
 
-    `linkage_angle`: angle to the previous edge at `source` (paper: E_t(θ_ij)), rad, or None.
+    `linkage_angle` (paper: E_t(θ_ij)): between places the difference of the robot's headings,
+    else between its heading and the bearing of the thing or bound, rad.
     """
 
     id: str
@@ -170,7 +171,13 @@ class OccupancyGrid:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TopologicalMap:
-    """The whole map, as it is stored, exported and asked; `T_map_source` as run.json has it."""
+    """The whole map, as it is stored, exported and asked.
+
+    - `T_map_source` (4, 4): from the source's pose frame to the map frame at the first view.
+    - `trajectory` (N, 17): stamp (s), then T_map_base (4x4) row by row, one row a view.
+    - `closures`: loop-closing events; `notes`: what had to be assumed; `counts`: of the run's
+      bookkeeping (births, merges, refuted predictions).
+    """
 
     places: tuple[RobotPlace, ...]
     entities: tuple[Entity, ...]
