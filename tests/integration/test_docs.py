@@ -18,6 +18,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from documents import Block, blocks, links
 from running import ROOT
 
