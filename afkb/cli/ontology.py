@@ -67,9 +67,7 @@ def check(
 
     base = state_of(ctx).host.knowledge_base.extended(extensions or [])
     Network.compile(base)
-    counts = {
-        what: Counter(item.status for item in items) for what, items in _items(base).items()
-    }
+    counts = {what: Counter(item.status for item in items) for what, items in _items(base).items()}
     if as_json:
         print_json({what: dict(sorted(by_status.items())) for what, by_status in counts.items()})
         return
