@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from afkb_containers.clusters import Cluster
@@ -97,11 +98,24 @@ def _inside(
         return np.zeros(len(xy), bool)
     edges = np.roll(corners, -1, axis=0) - corners
     length = np.maximum(np.hypot(edges[:, 0], edges[:, 1]), 1e-9)
-    area = np.sum(corners[:, 0] * np.roll(corners[:, 1], -1) - np.roll(corners[:, 0], -1) * corners[:, 1])
+    after = np.roll(corners, -1, axis=0)
+    area = np.sum(corners[:, 0] * after[:, 1] - after[:, 0] * corners[:, 1])
     inward = np.column_stack([-edges[:, 1], edges[:, 0]]) / length[:, None] * np.sign(area)
-    distance = xy[:, :2] @ inward.T - np.sum(corners * inward, axis=1)
-    inside: NDArray[np.bool_] = distance.min(axis=1) >= margin_m
-    return inside
+    return _beyond_all(inward, np.sum(corners * inward, axis=1) + margin_m, xy)
+
+
+@njit(cache=True)
+def _beyond_all(
+    normals: NDArray[np.float64], offsets: NDArray[np.float64], xy: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Which points lie on the inner side of every line normal . point = offset."""
+    out = np.ones(len(xy), np.bool_)
+    for n in range(len(xy)):
+        for k in range(len(offsets)):
+            if xy[n, 0] * normals[k, 0] + xy[n, 1] * normals[k, 1] < offsets[k]:
+                out[n] = False
+                break
+    return out
 
 
 def _share_around(rim_xy: NDArray[np.float64], inside_xy: NDArray[np.float64]) -> float:

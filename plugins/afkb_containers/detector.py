@@ -44,11 +44,10 @@ class ContainerDetector:
         scene = Scene.of(view, earlier, s)
         if scene is None:
             return []
-        shown = (scene.depth_m, scene.points, scene.labels, s.min_pixels)
         things = chain(
             self._on_supports(scene),
-            things_on_hidden_supports(*shown),
-            things_on_the_floor(*shown),
+            things_on_hidden_supports(scene, s.min_pixels),
+            things_on_the_floor(scene, s.min_pixels),
         )
         mine = np.zeros(scene.depth_m.shape, np.int32)
         judged = (self._detection(c, scene, mine, name) for name, c in enumerate(things, start=1))

@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from afkb_containers.clusters import Cluster, Stand
+from afkb_containers.scene import Scene
 from afkb_surfaces.noise import depth_sigma
 
 NEAREST_FLOOR_M = 0.25
@@ -27,25 +28,38 @@ HIDDEN_SHARE = 0.6
 
 
 @njit(cache=True)
-def _candidates(
+def _seen_from_above(
     depth_m: NDArray[np.float32],
     points: NDArray[np.float32],
     labels: NDArray[np.int16],
+    camera_xy: NDArray[np.float64],
     low_m: float,
     high_m: float,
-) -> NDArray[np.int64]:
-    """Flat indexes of pixels off every support and wall, between two heights, within range."""
+) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.uint8]]:
+    """Pixels off every support and wall, between two heights, within range.
+
+    Returns their flat indexes, the grid square of each (flat index, too), and the grid.
+    """
     rows, cols = depth_m.shape
-    out = np.empty(rows * cols, np.int64)
+    side = int(2 * FARTHEST_M / CELL_M) + 3
+    grid = np.zeros((side, side), np.uint8)
+    flat = np.empty(rows * cols, np.int64)
+    square = np.empty(rows * cols, np.int32)
     n = 0
     for v in range(rows):
         for u in range(cols):
-            z = depth_m[v, u]
+            if depth_m[v, u] <= 0 or labels[v, u] != 0:
+                continue
             h = points[v, u, 2]
-            if 0 < z < FARTHEST_M and labels[v, u] == 0 and low_m < h < high_m:
-                out[n] = v * cols + u
-                n += 1
-    return out[:n]
+            dx, dy = points[v, u, 0] - camera_xy[0], points[v, u, 1] - camera_xy[1]
+            if not (low_m < h < high_m) or dx * dx + dy * dy > FARTHEST_M * FARTHEST_M:
+                continue
+            i, j = int((dx + FARTHEST_M) / CELL_M), int((dy + FARTHEST_M) / CELL_M)
+            grid[i, j] = 1
+            flat[n] = v * cols + u
+            square[n] = i * side + j
+            n += 1
+    return flat[:n], square[:n], grid
 
 
 @njit(cache=True)
@@ -78,53 +92,43 @@ def _hidden_below(
     return hidden / max(total, 1)
 
 
-def things_on_hidden_supports(
-    depth_m: NDArray[np.float32],
-    points: NDArray[np.float32],
-    labels: NDArray[np.int16],
-    min_pixels: int,
-) -> Iterator[Cluster]:
+def things_on_hidden_supports(scene: Scene, min_pixels: int) -> Iterator[Cluster]:
     """Compact bodies that stand apart, seen from above, and whose foot something nearer covers."""
-    flat = _candidates(depth_m, points, labels, NEAREST_FLOOR_M, HIGHEST_M)
-    for u, v, xyz in _apart_from_above(flat, points, min_pixels):
+    depth_m = scene.depth_m
+    for u, v, xyz in _apart_from_above(scene, NEAREST_FLOOR_M, HIGHEST_M, min_pixels):
         if np.ptp(xyz[:, 2]) > TALLEST_M:
             continue
         if _hidden_below(u, v, depth_m, int(u.min()), int(u.max()) + 1) >= HIDDEN_SHARE:
             yield Cluster(Stand.HIDDEN, u, v, depth_m[v, u], xyz, depth_m.shape, None)
 
 
-def things_on_the_floor(
-    depth_m: NDArray[np.float32],
-    points: NDArray[np.float32],
-    labels: NDArray[np.int16],
-    min_pixels: int,
-) -> Iterator[Cluster]:
+def things_on_the_floor(scene: Scene, min_pixels: int) -> Iterator[Cluster]:
     """Compact bodies that stand apart on the floor, as bins and baskets do."""
-    flat = _candidates(depth_m, points, labels, FLOOR_M, BIN_M[1] + 0.1)
-    for u, v, xyz in _apart_from_above(flat, points, min_pixels):
+    depth_m = scene.depth_m
+    for u, v, xyz in _apart_from_above(scene, FLOOR_M, BIN_M[1] + 0.1, min_pixels):
         if BIN_M[0] < np.percentile(xyz[:, 2], 98) < BIN_M[1]:
             yield Cluster(Stand.ON_FLOOR, u, v, depth_m[v, u], xyz, depth_m.shape, 0.0)
 
 
 def _apart_from_above(
-    flat: NDArray[np.int64], points: NDArray[np.float32], min_pixels: int
+    scene: Scene, low_m: float, high_m: float, min_pixels: int
 ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]]:
     """Pixels (u, v) and points (N, 3) of what is narrow enough and alone, seen from above."""
+    flat, square, grid = _seen_from_above(
+        scene.depth_m, scene.points, scene.labels, scene.camera_xyz[:2].copy(), low_m, high_m
+    )
     if len(flat) < min_pixels:
         return
-    xyz = points.reshape(-1, 3)[flat]
-    ij = np.floor(xyz[:, :2] / CELL_M).astype(np.int32)
-    ij -= ij.min(axis=0)
-    grid = np.zeros(tuple((ij.max(axis=0) + 2).tolist()), np.uint8)
-    grid[ij[:, 0], ij[:, 1]] = 1
     count, parts, stats, _ = cv2.connectedComponentsWithStats(
         cv2.dilate(grid, np.ones((2, 2), np.uint8)), connectivity=8
     )
     wide = np.maximum(stats[:, cv2.CC_STAT_WIDTH], stats[:, cv2.CC_STAT_HEIGHT]) * CELL_M
-    of = parts[ij[:, 0], ij[:, 1]]
+    of = parts.ravel()[square]
     pixels = np.bincount(of, minlength=count)
-    for k in np.flatnonzero((wide <= WIDEST_M) & (pixels >= min_pixels)):
-        if k > 0:
-            member = np.flatnonzero(of == k)
-            v, u = np.divmod(flat[member], points.shape[1])
-            yield u, v, xyz[member].astype(np.float64)
+    narrow = (wide <= WIDEST_M) & (pixels >= min_pixels)
+    narrow[0] = False
+    kept = np.flatnonzero(narrow[of])
+    kept = kept[np.argsort(of[kept], kind="stable")]
+    for member in np.split(kept, np.cumsum(pixels[narrow])[:-1]) if len(kept) else []:
+        v, u = np.divmod(flat[member], scene.depth_m.shape[1])
+        yield u, v, scene.points[v, u].astype(np.float64)

@@ -32,13 +32,17 @@ def _holes(
     height_m: float,
     hull: NDArray[np.uint8],
     origin_xy: NDArray[np.float64],
+    image_box: tuple[int, int, int, int],
 ) -> NDArray[np.float32]:
-    """Deepest point seen through each square of a plane's hull (X, Y), m; 0 where none is."""
+    """Deepest point seen through each square of a plane's hull (X, Y), m; 0 where none is.
+
+    Whatever is seen through the hull lies in the image box of its support.
+    """
     deepest = np.zeros(hull.shape, np.float32)
     drop = camera_xyz[2] - height_m
-    rows, cols = depth_m.shape
-    for v in range(rows):
-        for u in range(cols):
+    u0, v0, u1, v1 = image_box
+    for v in range(v0, v1):
+        for u in range(u0, u1):
             z = depth_m[v, u]
             h = points[v, u, 2]
             under = height_m - h
@@ -79,8 +83,10 @@ def _in_support(
     hull = np.zeros_like(top)
     cv2.fillConvexPoly(hull, cv2.convexHull(ij[:, ::-1]), 1)
     hull[top > 0] = 0
+    rows, cols = scene.depth_m.shape
+    box = support.image_box or (0, 0, cols, rows)
     deepest = _holes(
-        scene.depth_m, scene.points, scene.camera_xyz, height_m, hull, origin
+        scene.depth_m, scene.points, scene.camera_xyz, height_m, hull, origin, box
     )
     open_ = cv2.morphologyEx((deepest > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3)))
     count, parts, stats, _ = cv2.connectedComponentsWithStats(open_, connectivity=4)

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+STRIDE_PX = 3
 REACH_PX = 6
 """How far beyond its border a surface is looked for missing depth; wider than speckle."""
 
@@ -21,8 +22,8 @@ def missing_border_fractions(
     """
     height, width = labels.shape
     border, missing = np.zeros(n_labels), np.zeros(n_labels)
-    for v in range(0, height, 2):
-        for u in range(0, width, 2):
+    for v in range(0, height, STRIDE_PX):
+        for u in range(0, width, STRIDE_PX):
             label = labels[v, u]
             if label <= 0:
                 continue

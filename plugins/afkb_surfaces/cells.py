@@ -85,17 +85,28 @@ def cell_planes(
     rows, cols = sums.shape[:2]
     cells = np.zeros((rows, cols, N_COLUMNS))
     window, plane = np.zeros(10), np.zeros(8)
+    column = np.zeros((cols, 10))
     for r in range(rows):
+        for c in range(cols):
+            for k in range(10):
+                total = sums[r, c, k]
+                if r > 0:
+                    total += sums[r - 1, c, k]
+                if r + 1 < rows:
+                    total += sums[r + 1, c, k]
+                column[c, k] = total
         for c in range(cols):
             if sums[r, c, 0] < CELL:
                 continue
             for wide in (True, False):
                 if wide:
-                    window[:] = 0.0
-                    for i in range(max(r - 1, 0), min(r + 2, rows)):
-                        for j in range(max(c - 1, 0), min(c + 2, cols)):
-                            for k in range(10):
-                                window[k] += sums[i, j, k]
+                    for k in range(10):
+                        total = column[c, k]
+                        if c > 0:
+                            total += column[c - 1, k]
+                        if c + 1 < cols:
+                            total += column[c + 1, k]
+                        window[k] = total
                 else:
                     for k in range(10):
                         window[k] = sums[r, c, k]

@@ -29,7 +29,7 @@ class Patch:
     v: NDArray[np.int64]
     depth_m: NDArray[np.float32]
     points: NDArray[np.float64]
-    shape: tuple[int, int]
+    shape: tuple[int, ...]
 
     @property
     def image_box(self) -> tuple[int, int, int, int]:
@@ -169,7 +169,7 @@ def support_detection(
 
 def image_width(patch: Patch) -> float:
     """Mean width of a patch across its longer direction in the image, px."""
-    thin = max(1, len(patch.u) // 2000)
+    thin = max(1, len(patch.u) // 600)
     pixels = np.column_stack([patch.u[::thin], patch.v[::thin]]).astype(np.float32)
     _, sides, _ = cv2.minAreaRect(pixels)
     return float(len(patch.u) / (max(sides) + 1.0))
@@ -177,6 +177,7 @@ def image_width(patch: Patch) -> float:
 
 def tilt_and_rms(points: NDArray[np.float64]) -> tuple[float, float]:
     """Tilt of the plane through points (N, 3) from level, degrees, and their rms about it, m."""
+    points = points[:: max(1, len(points) // 4000)]
     centred = points - points.mean(axis=0)
     xy, z = centred[:, :2], centred[:, 2]
     slope, *_ = np.linalg.lstsq(xy.T @ xy + 1e-6 * len(xy) * np.eye(2), xy.T @ z, rcond=None)

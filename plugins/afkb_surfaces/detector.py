@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from afkb.flow import Detection, View
@@ -19,12 +20,23 @@ from afkb_surfaces.describe import (
     support_detection,
 )
 from afkb_surfaces.fragments import join_fragments
-from afkb_surfaces.grouping import SUPPORT, UPRIGHT, classify, grow, pixel_labels
+from afkb_surfaces.grouping import (
+    SUPPORT,
+    UPRIGHT,
+    classify,
+    grow,
+    label_spans,
+    members,
+    pixel_labels,
+    points_of,
+)
 from afkb_surfaces.settings import SurfaceSettings
 from afkb_surfaces.upright import upright_detection
 
 FLOOR_LABEL = 1
-MIN_PIXELS = 80
+FLOOR_THIN = 3
+FLOOR_STEP_M = 0.05
+MIN_PIXELS, MIN_CELLS = 80, 20
 BELOW_CAMERA_M = 0.01
 """An upper surface is seen from above only; what seems to be one higher up is noise."""
 UPRIGHT_WITHIN_RAD = math.radians(12)
@@ -70,34 +82,57 @@ class SurfaceDetector:
         intrinsics: NDArray[np.float64],
         T: NDArray[np.float64],
     ) -> Iterator[Detection]:
-        is_support = np.zeros(int(labels.max()) + 1, bool)
-        is_support[labels[kinds == SUPPORT]] = True
-        is_support[FLOOR_LABEL:2] = True
-        missing = missing_border_fractions(depth_m, pixels, len(is_support))
-        for label, flat in pixels_by_label(pixels, is_support):
-            if len(flat) < MIN_PIXELS:
-                continue
-            patch = patch_of(flat[:: 9 if label == FLOOR_LABEL else 1], depth_m, intrinsics, T)
+        n = int(labels.max()) + 2
+        wanted, thin = np.zeros(n, bool), np.ones(n, np.int64)
+        wanted[labels[kinds == SUPPORT]] = True
+        wanted[FLOOR_LABEL], thin[FLOOR_LABEL] = True, FLOOR_THIN
+        flat, starts = members(pixels, wanted, thin)
+        points = points_of(flat, depth_m, intrinsics, T)
+        missing = missing_border_fractions(depth_m, pixels, n)
+        for label in np.flatnonzero(np.diff(starts) >= MIN_PIXELS):
+            part = slice(int(starts[label]), int(starts[label + 1]))
+            v, u = np.divmod(flat[part], depth_m.shape[1])
+            patch = Patch(u, v, depth_m[v, u], points[part], depth_m.shape)
             if label == FLOOR_LABEL:
-                yield from self._floor(patch, len(flat))
-                continue
-            height = mode_height(patch.points[:, 2])
-            if height > T[2, 3] - BELOW_CAMERA_M:
-                continue
-            footprint = filled_footprint(
-                patch, pixels, label, height, intrinsics, T, self.settings.footprint_step_m
-            )
-            found = support_detection(
-                patch, footprint, height, float(missing[label]), self.settings, self.name
-            )
-            if found is not None:
-                yield found
+                yield from self._floor(patch)
+            else:
+                yield from self._support(
+                    patch, pixels, int(label), float(missing[label]), intrinsics, T
+                )
 
-    def _floor(self, patch: Patch, n_pixels: int) -> Iterator[Detection]:
-        footprint = on_grid(patch.points[:, :2], 0.05)
+    def _support(
+        self,
+        patch: Patch,
+        pixels: NDArray[np.int32],
+        label: int,
+        missing_border: float,
+        intrinsics: NDArray[np.float64],
+        T: NDArray[np.float64],
+    ) -> Iterator[Detection]:
+        height = mode_height(patch.points[:, 2])
+        if height > T[2, 3] - BELOW_CAMERA_M:
+            return
+        step = self.settings.footprint_step_m
+        footprint = filled_footprint(patch, pixels, label, height, intrinsics, T, step)
+        found = support_detection(
+            patch, footprint, height, missing_border, self.settings, self.name
+        )
+        if found is not None:
+            yield found
+
+    def _floor(self, patch: Patch) -> Iterator[Detection]:
+        """The floor, once; its height is where it was seen, its top is z = 0."""
+        footprint = on_grid(patch.points[:, :2], FLOOR_STEP_M)
         found = support_detection(patch, footprint, 0.0, 0.0, self.settings, self.name)
         if found is not None:
-            yield _as_floor(found, float(np.median(patch.points[:, 2])), n_pixels)
+            measures = {
+                **found.measures,
+                "is_floor": 1.0,
+                "area": len(footprint) * FLOOR_STEP_M**2,
+                "height": float(np.median(patch.points[:, 2])),
+            }
+            n_pixels = found.n_pixels * FLOOR_THIN**2
+            yield replace(found, n_pixels=n_pixels, extent_known=True, measures=measures)
 
     def _bounds(
         self,
@@ -107,47 +142,15 @@ class SurfaceDetector:
         focal_px: float,
     ) -> Iterator[Detection]:
         upright = np.where(kinds == UPRIGHT, labels, 0).astype(np.int32)
-        for _, flat in pixels_by_label(upright, np.ones(int(labels.max()) + 1, bool)):
-            if len(flat) >= MIN_PIXELS // 4:
-                rc = np.column_stack(np.divmod(flat, labels.shape[1]))
-                found = upright_detection(rc, cells, focal_px, self.settings, self.name)
-                if found is not None:
-                    yield found
-
-
-def pixels_by_label(
-    labels: NDArray[np.int32], wanted: NDArray[np.bool_]
-) -> Iterator[tuple[int, NDArray[np.int64]]]:
-    """Each wanted label above 0 with the flat indexes that carry it, in order."""
-    flat = np.flatnonzero(wanted[labels.ravel()] & (labels.ravel() > 0))
-    of = labels.ravel()[flat]
-    order = np.argsort(of, kind="stable")
-    flat, of = flat[order], of[order]
-    if len(of) == 0:
-        return
-    names, starts = np.unique(of, return_index=True)
-    for name, group in zip(names, np.split(flat, starts[1:]), strict=True):
-        yield int(name), group
-
-
-def patch_of(
-    flat: NDArray[np.int64],
-    depth_m: NDArray[np.float32],
-    intrinsics: NDArray[np.float64],
-    T_map_camera: NDArray[np.float64],
-) -> Patch:
-    """The pixels of flat indexes with their points in the map frame."""
-    v, u = np.divmod(flat, depth_m.shape[1])
-    z = depth_m.ravel()[flat]
-    fx, fy, cx, cy = intrinsics
-    camera = np.column_stack([(u - cx) / fx * z, (v - cy) / fy * z, z])
-    points = camera @ T_map_camera[:3, :3].T + T_map_camera[:3, 3]
-    return Patch(u, v, z, points, (depth_m.shape[0], depth_m.shape[1]))
-
-
-def _as_floor(found: Detection, height_m: float, n_pixels: int) -> Detection:
-    """The same, marked as the floor; its height is where it was seen, its top is z = 0."""
-    from dataclasses import replace
-
-    measures = {**found.measures, "is_floor": 1.0, "height": height_m}
-    return replace(found, n_pixels=n_pixels, extent_known=True, measures=measures)
+        n = int(labels.max()) + 1
+        spans = label_spans(cells, upright, n)
+        tall = spans[:, 2] - spans[:, 1] > 0.9 * self.settings.bound_height_m[0]
+        wanted = tall & (spans[:, 0] >= MIN_CELLS)
+        wanted[0] = False
+        flat, starts = members(upright, wanted, np.ones(n, np.int64))
+        for label in np.flatnonzero(wanted):
+            part = flat[starts[label] : starts[label + 1]]
+            rc = np.column_stack(np.divmod(part, labels.shape[1]))
+            found = upright_detection(rc, cells, focal_px, self.settings, self.name)
+            if found is not None:
+                yield found

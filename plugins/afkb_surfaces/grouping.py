@@ -135,3 +135,70 @@ def pixel_labels(
                             best = off
                             out[v, u] = labels[i, j]
     return out
+
+
+@njit(cache=True)
+def members(
+    labels: NDArray[np.int32], wanted: NDArray[np.bool_], thin: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Flat indexes of the wanted labels' pixels, label by label, and where each label begins.
+
+    `thin` (n_labels,): of a label, every such row and column alone is taken. Label k holds
+    `flat[starts[k]:starts[k + 1]]`.
+    """
+    rows, cols = labels.shape
+    n = len(wanted)
+    starts = np.zeros(n + 1, np.int64)
+    for v in range(rows):
+        for u in range(cols):
+            k = labels[v, u]
+            if k > 0 and wanted[k] and v % thin[k] == 0 and u % thin[k] == 0:
+                starts[k + 1] += 1
+    for k in range(n):
+        starts[k + 1] += starts[k]
+    flat = np.empty(starts[n], np.int64)
+    fill = starts[:-1].copy()
+    for v in range(rows):
+        for u in range(cols):
+            k = labels[v, u]
+            if k > 0 and wanted[k] and v % thin[k] == 0 and u % thin[k] == 0:
+                flat[fill[k]] = v * cols + u
+                fill[k] += 1
+    return flat, starts
+
+
+@njit(cache=True)
+def points_of(
+    flat: NDArray[np.int64],
+    depth_m: NDArray[np.float32],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Points (N, 3) of pixels given by flat index, map frame."""
+    fx, fy, cx, cy = intrinsics
+    T = T_map_camera
+    cols = depth_m.shape[1]
+    out = np.empty((len(flat), 3))
+    for n in range(len(flat)):
+        v, u = flat[n] // cols, flat[n] % cols
+        z = depth_m[v, u]
+        x, y = (u - cx) / fx * z, (v - cy) / fy * z
+        for k in range(3):
+            out[n, k] = T[k, 0] * x + T[k, 1] * y + T[k, 2] * z + T[k, 3]
+    return out
+
+
+@njit(cache=True)
+def label_spans(
+    cells: NDArray[np.float64], labels: NDArray[np.int32], n_labels: int
+) -> NDArray[np.float64]:
+    """Number of cells of each label, and their lowest and highest centre, m: (n_labels, 3)."""
+    spans = np.zeros((n_labels, 3))
+    spans[:, 1], spans[:, 2] = np.inf, -np.inf
+    for r in range(labels.shape[0]):
+        for c in range(labels.shape[1]):
+            k, z = labels[r, c], cells[r, c, Z]
+            spans[k, 0] += 1
+            spans[k, 1] = min(spans[k, 1], z)
+            spans[k, 2] = max(spans[k, 2], z)
+    return spans
