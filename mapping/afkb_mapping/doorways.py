@@ -13,8 +13,10 @@ from afkb.flow import OccupancyGrid
 
 Labels = NDArray[np.int32]
 Array = NDArray[np.float64]
-Window = tuple[slice, slice]
+Cells = NDArray[np.intp]
 
+NARROWEST_M = 0.5
+"""Nobody passes a narrower gap: it is a hole in the wall, or in what was seen of it."""
 SEARCH = 2.5
 """The opposite jamb is sought up to this many times the clearance away."""
 OPPOSITE = 0.5
@@ -42,19 +44,47 @@ def find_doorways(
 ) -> tuple[DoorwayShape, ...]:
     """One doorway per place where two rooms touch; `clearance` (rows, cols), m, to obstacles."""
     doorways = []
-    for a, b in _touching_pairs(labels):
-        touching = (labels == a) & ndimage.binary_dilation(labels == b, np.ones((3, 3)))
-        places, count = ndimage.label(touching, structure=np.ones((3, 3)))
-        for place in range(1, count + 1):
-            height = np.where(places == place, clearance, -1.0)
-            cell = np.array(divmod(int(np.argmax(height)), height.shape[1]))
-            jambs = _jambs(labels, cell, float(height.max()) / grid.resolution_m)
+    for pair, cells in _touching(labels):
+        for place in _connected(cells):
+            heights = clearance[place[:, 0], place[:, 1]]
+            widest = int(np.argmax(heights))
+            jambs = _jambs(labels, place[widest], float(heights[widest]) / grid.resolution_m)
             if jambs is not None:
-                doorways.append(_doorway(labels, jambs, (a, b), grid))
-    return tuple(doorways)
+                doorways.append(_doorway(labels, jambs, pair, grid))
+    return tuple(d for d in doorways if d.width >= NARROWEST_M)
 
 
-def _jambs(labels: Labels, cell: NDArray[np.intp], clearance: float) -> Array | None:
+def _touching(labels: Labels) -> list[tuple[tuple[int, int], Cells]]:
+    """Pairs of rooms (smaller label first) with the cells (N, 2) of the first at the second."""
+    found = []
+    for dr, dc in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        here = labels[: labels.shape[0] - dr, max(0, -dc) : labels.shape[1] - max(0, dc)]
+        there = labels[dr:, max(0, dc) : labels.shape[1] + min(0, dc)]
+        rows, cols = np.nonzero((here != there) & (here > 0) & (there > 0))
+        a, b = here[rows, cols], there[rows, cols]
+        cols = cols + max(0, -dc)
+        first = a < b
+        row, col = np.where(first, rows, rows + dr), np.where(first, cols, cols + dc)
+        found.append(np.column_stack([np.minimum(a, b), np.maximum(a, b), row, col]))
+    touching = np.unique(np.concatenate(found), axis=0).astype(np.intp)
+    if not len(touching):
+        return []
+    pairs, starts = np.unique(touching[:, :2], axis=0, return_index=True)
+    parts = np.split(touching[:, 2:], starts[1:])
+    return [((int(a), int(b)), cells) for (a, b), cells in zip(pairs, parts, strict=True)]
+
+
+def _connected(cells: Cells) -> list[Cells]:
+    """Cells (N, 2) by connected place, in order of rows."""
+    low = cells.min(axis=0)
+    mask = np.zeros(np.ptp(cells, axis=0) + 1, dtype=bool)
+    mask[tuple((cells - low).T)] = True
+    places, count = ndimage.label(mask, structure=np.ones((3, 3)))
+    number = places[tuple((cells - low).T)]
+    return [cells[number == n] for n in range(1, count + 1)]
+
+
+def _jambs(labels: Labels, cell: Cells, clearance: float) -> Array | None:
     """(2, 2) rows and columns of the obstacles on either side of a cell of a passage.
 
     The nearest one, and the nearest to it on the other side; None where the map ends before that.
@@ -75,22 +105,6 @@ def _jambs(labels: Labels, cell: NDArray[np.intp], clearance: float) -> Array | 
         return None
     width = np.linalg.norm(obstacles - obstacles[nearest], axis=1)
     return obstacles[[nearest, int(np.argmin(np.where(opposite, width, np.inf)))]]
-
-
-def _touching_pairs(labels: Labels) -> list[tuple[int, int]]:
-    """Pairs of different room labels in neighbouring cells, smaller label first, sorted."""
-    pairs: set[tuple[int, int]] = set()
-    shifts: list[tuple[Window, Window]] = [
-        (np.s_[:, :-1], np.s_[:, 1:]),
-        (np.s_[:-1, :], np.s_[1:, :]),
-    ]
-    shifts += [(np.s_[:-1, :-1], np.s_[1:, 1:]), (np.s_[:-1, 1:], np.s_[1:, :-1])]
-    for here, there in shifts:
-        a, b = labels[here], labels[there]
-        differ = (a != b) & (a > 0) & (b > 0)
-        low, high = np.minimum(a, b)[differ], np.maximum(a, b)[differ]
-        pairs.update(zip(low.tolist(), high.tolist(), strict=True))
-    return sorted(pairs)
 
 
 def _doorway(

@@ -16,6 +16,7 @@ from scipy import ndimage
 from afkb.flow import OccupancyGrid
 from afkb_mapping.doorways import DoorwayShape, find_doorways
 from afkb_mapping.free_space import Mask, free_space
+from afkb_mapping.room_borders import cut_at_doorways
 
 Labels = NDArray[np.int32]
 
@@ -53,8 +54,10 @@ def segment_rooms(grid: OccupancyGrid) -> Segmentation:
     labels = _basins(free, clearance)
     labels = _absorb_niches(labels, clearance, LEAST_ROOM_M2 / grid.resolution_m**2)
     labels = _numbered(labels)
+    doorways = find_doorways(labels, clearance, grid)
+    labels = cut_at_doorways(labels, doorways, grid)
     rooms = tuple(_shape(labels, label, clearance, grid) for label in range(1, labels.max() + 1))
-    return Segmentation(labels, rooms, find_doorways(labels, clearance, grid))
+    return Segmentation(labels, rooms, doorways)
 
 
 def _clearance(free: Mask, resolution: float) -> NDArray[np.float32]:
