@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 SET_UP := pyproject.toml constraints.txt scripts/set-up.sh
 
-.PHONY: demo test lint format pins clean
+.PHONY: demo test lint format pictures pins clean
 
 demo: $(VENV)/.default  ## map the bundled simulated home and print what was found
 	$(BIN)/afkb demo --out demo-map
@@ -21,11 +21,17 @@ format: $(VENV)/.dev  ## mend what the formatter can mend
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
+pictures: $(VENV)/.default  ## make the pictures in the documents again
+	$(BIN)/afkb demo --out demo-map
+	$(BIN)/afkb map world:paper_home --out demo-map-early --stop 6
+	$(BIN)/python scripts/picture.py demo-map docs/demo-map.svg edges ids
+	$(BIN)/python scripts/picture.py demo-map-early docs/early-map.svg edges ids
+
 pins: $(VENV)/.dev  ## write what is installed as the versions to test with
 	scripts/pin.sh $(BIN)/python
 
 clean:  ## remove the environment and what the targets made
-	rm -rf $(VENV) demo-map
+	rm -rf $(VENV) demo-map demo-map-early
 
 $(VENV)/.default: $(SET_UP)
 	scripts/set-up.sh $(PYTHON) $(VENV) .

@@ -128,6 +128,15 @@ def test_what_is_named_without_being_run_is_there(block: Block, recordings: Path
             assert command in {"afkb", "cd", "git", "source", ".venv/bin/afkb"}, line
 
 
+def test_the_pictures_are_plans_of_maps(demo_folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "plan.svg"
+    script = ROOT / "scripts" / "picture.py"
+    subprocess.run([sys.executable, script, demo_folder / "demo-map", out, "edges"], check=True)
+    plan = out.read_text()
+    assert plan.startswith("<svg") and 'class="things"' in plan and 'class="edges"' not in plan
+    assert (ROOT / "docs" / "demo-map.svg").read_text().startswith("<svg")
+
+
 @pytest.mark.parametrize(("document", "target"), links())
 def test_links_lead_somewhere(document: Path, target: str) -> None:
     assert (document.parent / target).exists(), f"{document.name} links to {target}"
