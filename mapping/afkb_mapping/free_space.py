@@ -16,8 +16,12 @@ OCCUPIED_ABOVE = 0.55
 """Probability above which a cell is occupied."""
 GAP_M = 0.2
 """Unknown gaps up to this width inside free space are spaces between beams or depth pixels."""
-SPOKE_M = 0.25
-"""Free space narrower than this is a beam through a window or a gap, nowhere to stand."""
+SPOKE_M = 1.0
+"""Free space narrower than this may be a fan of beams through a window or past a corner,"""
+SPOKE_WALLED = 0.3
+"""and is, where less than this part of its rim is known to be occupied."""
+SEEN_GAP_M = 2.0
+"""Space between seen things up to this wide lies in the same room, where no floor was seen."""
 FURNITURE_M = 2.4
 """An island in the free space no longer than this is furniture (a bed, a sofa, a cabinet),"""
 PARTITION_M = (1.0, 0.35)
@@ -32,7 +36,20 @@ def free_space(grid: OccupancyGrid) -> Mask:
         occupied = grid.probability > OCCUPIED_ABOVE
     free = _closed(free, GAP_M, resolution) & ~occupied
     free = without_furniture(free, resolution)
-    return _opened(free, SPOKE_M, resolution)
+    return _without_spokes(free, occupied, resolution)
+
+
+def seen_space(grid: OccupancyGrid) -> Mask:
+    """(rows, cols) the largest patch of what was seen at all, things and the space between them.
+
+    For recordings that look at things and hardly at the floor: they still were in some room.
+    """
+    seen = _closed(np.isfinite(grid.probability), SEEN_GAP_M, grid.resolution_m)
+    patches, _ = ndimage.label(ndimage.binary_fill_holes(seen))
+    sizes = np.bincount(patches.ravel())
+    sizes[0] = 0
+    largest: Mask = (patches == np.argmax(sizes)) & (patches > 0)
+    return largest
 
 
 def without_furniture(free: Mask, resolution: float) -> Mask:
@@ -57,6 +74,19 @@ def _is_furniture(island: Mask, resolution: float) -> bool:
     thickness = 2 * float(_distance(np.pad(island, 1), resolution).max())
     is_wall = length >= PARTITION_M[0] and thickness <= PARTITION_M[1]
     return length <= FURNITURE_M and not is_wall
+
+
+def _without_spokes(free: Mask, occupied: Mask, resolution: float) -> Mask:
+    """Free space without narrow parts whose rim is mostly unknown."""
+    parts, _ = ndimage.label(free & ~_opened(free, SPOKE_M, resolution))
+    kept = free.copy()
+    for label, window in enumerate(ndimage.find_objects(parts), start=1):
+        around = tuple(slice(max(s.start - 1, 0), s.stop + 1) for s in window)
+        part = parts[around] == label
+        rim = ndimage.binary_dilation(part) & ~free[around]
+        if (rim & occupied[around]).sum() < SPOKE_WALLED * rim.sum():
+            kept[around] &= ~part
+    return kept
 
 
 def _closed(mask: Mask, width_m: float, resolution: float) -> Mask:

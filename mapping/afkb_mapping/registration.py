@@ -39,7 +39,7 @@ JUMP_OVERLAP = 0.5
 """A match further from odometry must explain this part of the scan,"""
 JUMP_GAIN = 0.15
 """and this much more of it than the best near one does."""
-NEW_GROUND = 0.25
+NEW_GROUND = 0.5
 """Where this part of a scan finds no surface within reach, it shows new ground, no wrong pose."""
 REACH_M, REACH_RAD = 1.0, math.radians(30)
 """Greatest reach of the coarse search: slip and collisions within one step of a recording,"""
@@ -107,7 +107,7 @@ class ScanRegistration:
         pivot = T_predicted[:2, 3].copy()
         prior = self._drift + np.diag(np.square(ODOMETRY_FLOOR))
         local_map = LocalMap(self._map.near(pivot, RADIUS_M))
-        match = self._best_match(scan, local_map, pivot, prior)
+        match = self._best_match(scan.near(pivot, RADIUS_M), local_map, pivot, prior)
         if match is None:
             return self._go_on_by_odometry(scan, local_map, T_predicted)
         self._unmatched, self._drift = 0, np.zeros((3, 3))

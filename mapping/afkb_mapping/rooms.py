@@ -15,7 +15,7 @@ from scipy import ndimage
 
 from afkb.flow import OccupancyGrid
 from afkb_mapping.doorways import DoorwayShape, find_doorways
-from afkb_mapping.free_space import Mask, free_space
+from afkb_mapping.free_space import Mask, free_space, seen_space
 from afkb_mapping.room_borders import cut_at_doorways
 
 Labels = NDArray[np.int32]
@@ -49,10 +49,14 @@ class Segmentation:
 
 def segment_rooms(grid: OccupancyGrid) -> Segmentation:
     """The rooms of the grid, largest first, with the doorways between them."""
-    free = free_space(grid)
-    clearance = _clearance(free, grid.resolution_m)
-    labels = _basins(free, clearance)
-    labels = _absorb_niches(labels, clearance, LEAST_ROOM_M2 / grid.resolution_m**2)
+    least_cells = LEAST_ROOM_M2 / grid.resolution_m**2
+    clearance = _clearance(free_space(grid), grid.resolution_m)
+    labels = _absorb_niches(_basins(clearance), clearance, least_cells)
+    if not labels.any():
+        seen = seen_space(grid)
+        if seen.sum() < least_cells:
+            return Segmentation(labels, (), ())
+        labels, clearance = seen.astype(np.int32), _clearance(seen, grid.resolution_m)
     labels = _numbered(labels)
     doorways = find_doorways(labels, clearance, grid)
     labels = cut_at_doorways(labels, doorways, grid)
@@ -67,10 +71,10 @@ def _clearance(free: Mask, resolution: float) -> NDArray[np.float32]:
     return np.asarray(np.maximum(distance - resolution / 2, 0), dtype=np.float32)
 
 
-def _basins(free: Mask, clearance: NDArray[np.float32]) -> Labels:
+def _basins(clearance: NDArray[np.float32]) -> Labels:
     from afkb_mapping.flood_kernel import flood
 
-    flat = np.flatnonzero(free)
+    flat = np.flatnonzero(clearance > 0)
     order = flat[np.argsort(-clearance.ravel()[flat], kind="stable")]
     labels: Labels = flood(clearance, order.astype(np.int64), WIDEST_DOOR_M / 2, NARROWING)
     return labels

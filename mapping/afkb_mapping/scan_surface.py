@@ -44,6 +44,11 @@ class SurfacePoints:
     def __len__(self) -> int:
         return len(self.points_xy)
 
+    def near(self, center_xy: Points, radius_m: float) -> SurfacePoints:
+        """The part within a radius of a point, m."""
+        close = ((self.points_xy - center_xy) ** 2).sum(axis=1) < radius_m**2
+        return SurfacePoints(self.points_xy[close], self.normals_xy[close])
+
     def moved(self, R: Points, t: Points) -> SurfacePoints:
         """The same surface rotated by R (2, 2), then shifted by t (2,)."""
         return SurfacePoints(self.points_xy @ R.T + t, self.normals_xy @ R.T)

@@ -114,6 +114,17 @@ def test_a_corridor_is_told_from_the_rooms_along_it():
     assert len(found.doorways) == 3
 
 
+def test_where_only_things_were_seen_they_are_in_one_room():
+    probability = np.full((80, 80), np.nan, np.float32)
+    fill(probability, 0.5, 0.5, 0.8, 3.0, 0.9)
+    fill(probability, 2.2, 0.8, 2.9, 2.6, 0.9)
+    fill(probability, 1.2, 1.0, 1.5, 1.4, 0.1)
+    _, found = segmented(probability)
+    (room,) = found.rooms
+    assert 3 < room.area < 7
+    assert found.doorways == ()
+
+
 def test_an_unknown_grid_has_no_rooms():
     _, found = segmented(np.full((5, 5), np.nan, np.float32))
     assert found.rooms == ()
