@@ -127,6 +127,12 @@ def predicted_entities(
     return entities
 
 
+def _known_categories(track: PredictedTrack, network: Network) -> dict[str, float]:
+    """A predictor's categories, without those that the ontology lacks."""
+    known = network.knowledge_base.categories
+    return {name: p for name, p in track.categories.items() if name in known}
+
+
 def supports_expected(predictions: Iterable[PredictedTrack]) -> dict[str, str]:
     """Thing to the unseen support that it follows from: id to id."""
     return {
@@ -146,7 +152,9 @@ def _predicted(track: PredictedTrack, anchors: tuple[str, ...], network: Network
         else (track.top_range_m[1])
     )
     size = (width, depth, SURFACE_THICKNESS_M)
-    belief = track.categories or network.category_posterior(track.affordances, size, top)
+    belief = _known_categories(track, network) or network.category_posterior(
+        network.known(track.affordances), size, top
+    )
     movability, weight = network.movability(belief)
     polygon = np.array(
         [

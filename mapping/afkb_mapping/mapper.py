@@ -22,9 +22,9 @@ from afkb_mapping.tracks import ObservedTrack, PredictedTrack
 from afkb_mapping.update_rules import against, update_rule
 from afkb_mapping.visibility import Look, Sight
 
-EMPTY_LIKELIHOOD_RATIO = 0.3
-"""Seeing through where a thing should be is this much likelier if it is gone than if it is there:
-a look misses a surface that is there in about a quarter of views (thin, dark, at the edge)."""
+EMPTY_LIKELIHOOD_RATIO = 0.03
+"""P(seen through | still there) over P(seen through | gone): most of a thing's surface, in clear
+view, is seen through by mistake only where the pose is off or the thing is see-through."""
 LOOKED_AT_SHARE = 0.7
 GONE_BELOW = 0.2
 

@@ -27,9 +27,12 @@ from afkb_mapping.entities import observed_entities, predicted_entities, support
 from afkb_mapping.occupancy import rasterise
 from afkb_mapping.places import Place
 from afkb_mapping.room_lookup import RoomLookup, room_id
-from afkb_mapping.rooms import Segmentation, segment_rooms
+from afkb_mapping.rooms import Segmentation
 from afkb_mapping.tracks import ObservedTrack, PredictedTrack
+from afkb_mapping.whole_room import rooms_or_whole
 
+SEEN_RELIABLY = ("SupportAbility",)
+"""Features whose absence from a visited room says something: their detectors overlook little."""
 STEP_M = 0.05
 """What is lower than this, a carpet or a sill, a robot drives over."""
 
@@ -53,7 +56,7 @@ class MapContent:
 
 def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> TopologicalMap:
     """The `TopologicalMap` of a mapper's content."""
-    segmentation = segment_rooms(content.grid)
+    segmentation = rooms_or_whole(content.grid)
     lookup = RoomLookup(segmentation, content.grid)
     observed = observed_entities(content.tracks, content.network)
     known = {e.id for e in observed}
@@ -116,6 +119,8 @@ def _rooms(
     for shape in segmentation.rooms:
         id_ = room_id(shape.label)
         counts: Counter[str] = Counter()
+        if id_ in visited:
+            counts.update(dict.fromkeys(content.network.evidence_looked_for(SEEN_RELIABLY), 0))
         for entity in entities:
             if entity.room == id_ and entity.kind is NodeKind.OBSERVED:
                 counts.update(_evidence_of(entity, content.network))
@@ -129,7 +134,7 @@ def _evidence_of(entity: Entity, network: Network) -> tuple[str, ...]:
     height = entity.position_xyz[2]
     if "SupportAbility" not in entity.affordances:
         height += entity.size_xyz[2] / 2
-    return network.evidence_of(entity.affordances, entity.size_xyz, height)
+    return network.evidence_of(network.known(entity.affordances), entity.size_xyz, height)
 
 
 def _with_things(grid: OccupancyGrid, entities: Sequence[Entity]) -> OccupancyGrid:

@@ -14,8 +14,8 @@ from afkb.errors import PluginError
 
 UpdateRule = Callable[[float, float], float]
 
-CERTAIN = 0.99
-"""No accumulation of evidence makes more certain than this; only a direct observation does."""
+CERTAIN = 0.97
+"""No accumulation of evidence makes more certain than this: in homes, things get moved."""
 
 
 def _log_odds(p: float) -> float:

@@ -54,7 +54,7 @@ def test_the_predicted_support_once_seen_closes_the_loop(mapper):
 
 def test_a_support_that_is_in_the_map_already_is_not_predicted(mapper):
     mapper.add(view(0), [support(2.0, 0.0)], [])
-    mapper.add(view(1, x=0.6), [container(2.0, 0.0)], [support_below(0)])
+    mapper.add(view(1, x=0.6, depth_m=1.0), [container(2.0, 0.0)], [support_below(0)])
     found = mapper.finish(np.eye(4))
     assert not of_kind(found, NodeKind.DUAL)
     (cup,) = [e for e in found.entities if "ContainAbility" in e.affordances]
