@@ -14,7 +14,7 @@ from afkb.testing.exporters import check_exporter
 from afkb.testing.extensions import check_commands, check_ontology
 from afkb.testing.mappers import check_map, check_mapper_factory
 from afkb.testing.predictors import check_predictor
-from afkb.testing.sample_flow import sample_detections, sample_map
+from afkb.testing.sample_flow import sample_detections, sample_hypotheses, sample_map
 from afkb.testing.sample_views import sample_view, sample_views
 from afkb.testing.sources import check_source
 
@@ -29,6 +29,7 @@ __all__ = [
     "check_predictor",
     "check_source",
     "sample_detections",
+    "sample_hypotheses",
     "sample_map",
     "sample_view",
     "sample_views",

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from afkb.flow import Detection, Entity, NodeKind, TopologicalMap, View
+from afkb.flow import Detection, Entity, Hypothesis, NodeKind, TopologicalMap, View
 from afkb.knowledge import KnowledgeBase
 from afkb.plugins.protocols import Mapper, MapperFactory
 from afkb.testing.require import (
@@ -17,7 +17,7 @@ from afkb.testing.require import (
     require_probability,
     same,
 )
-from afkb.testing.sample_flow import sample_detections
+from afkb.testing.sample_flow import sample_detections, sample_hypotheses
 from afkb.testing.sample_views import sample_views
 
 _RULES = ("log-odds", "noisy-or", "literal")
@@ -28,29 +28,37 @@ def check_mapper_factory(
     knowledge_base: KnowledgeBase,
     views: Sequence[View] | None = None,
     detections: Sequence[Detection] | None = None,
+    hypotheses: Sequence[Hypothesis] | None = None,
 ) -> None:
     """Raise unless its mappers keep the contract, under every update rule.
 
+    `views`, `detections`, `hypotheses`: what to map, by default a small sample of each.
     A map may be asked for at any time and more views added after; two runs agree to the bit.
     """
     name = require_name(factory, f"mapper factory {type(factory).__name__}")
     views = sample_views() if views is None else views
-    detections = sample_detections() if detections is None else detections
+    if detections is None:
+        detections, hypotheses = sample_detections(), sample_hypotheses()
     for rule in _RULES:
         who = f"mapper {name!r} with rule {rule!r}"
         first, again = factory(rule), factory(rule)
         require(isinstance(first, Mapper), who, "makes no Mapper", "see afkb.plugins.protocols")
         require(first is not again, who, "hands out one mapper twice", "make a fresh one each time")
-        result = _run(first, views, detections)
+        result = _run(first, views, detections, hypotheses or ())
         check_map(result, knowledge_base, who)
         require(len(result.places) > 0, who, "has no robot place", "keep where the robot stood")
-        other = _run(again, views, detections)
+        other = _run(again, views, detections, hypotheses or ())
         require(same(result, other), who, "maps differently the second time", "order its sets")
 
 
-def _run(mapper: Mapper, views: Sequence[View], detections: Sequence[Detection]) -> TopologicalMap:
+def _run(
+    mapper: Mapper,
+    views: Sequence[View],
+    detections: Sequence[Detection],
+    hypotheses: Sequence[Hypothesis],
+) -> TopologicalMap:
     for i, view in enumerate(views):
-        mapper.add(view, detections, ())
+        mapper.add(view, detections, hypotheses)
         if i == 0:
             mapper.finish(np.eye(4))
     return mapper.finish(np.eye(4))

@@ -12,9 +12,11 @@ from afkb.flow import (
     Edge,
     EdgeKind,
     Entity,
+    Hypothesis,
     NodeKind,
     OccupancyGrid,
     OrientedBox,
+    Relation,
     RobotPlace,
     Room,
     TopologicalMap,
@@ -51,6 +53,24 @@ def sample_detections() -> tuple[Detection, ...]:
         _detection({"SupportAbility": 0.9}, (1.1, 0.0, 0.43), (0.42, 0.42, 0.04)),
         _detection(cup, (3.0, 1.0, 0.955), size),
         _detection(cup, (3.0, 1.3, 0.955), size),
+    )
+
+
+def sample_hypotheses() -> tuple[Hypothesis, ...]:
+    """What follows from `sample_detections`: something supports the two cups in mid-air."""
+    return (
+        Hypothesis(
+            predictor="sample",
+            order=1,
+            relation=Relation.BELOW,
+            anchors=(3, 4),
+            affordances={"SupportAbility": 0.7},
+            scale="Large",
+            probability=0.7,
+            axiom="https://w3id.org/afkb/afnet#ContainPredictsSupportBelow",
+            distance_m=(0.0, 0.2),
+            size_xy_m=(1.2, 0.8),
+        ),
     )
 
 

@@ -43,9 +43,9 @@ def test_exporter(exporter: Exporter, tmp_path: Path) -> None:
     testing.check_exporter(exporter, tmp_path)
 
 
-@pytest.mark.parametrize("path", ONTOLOGIES, ids=lambda p: p.name)
-def test_ontology(path: Path) -> None:
-    testing.check_ontology(path, HOST.knowledge_base)
+def test_ontologies() -> None:
+    for path in ONTOLOGIES:
+        testing.check_ontology(path, HOST.knowledge_base)
 
 
 @pytest.mark.parametrize("plugin", COMMANDS)
