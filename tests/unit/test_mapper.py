@@ -113,7 +113,7 @@ def test_one_cup_seen_thirty_times_is_one_node(mapper):
 def test_two_cups_side_by_side_stay_two(mapper):
     for i in range(5):
         mapper.add(view(i, x=0.1 * i), [container(2.0, 0.0), container(2.0, 0.12)], [])
-    mapper.add(view(6, x=0.7), [container(2.0, 0.12)], [])
+    mapper.add(view(6, x=0.7, depth_m=1.0), [container(2.0, 0.12)], [])
     assert len(of_kind(mapper.finish(np.eye(4)), NodeKind.OBSERVED)) == 2
 
 
