@@ -27,9 +27,8 @@ from afkb_mapping.entities import observed_entities, predicted_entities, support
 from afkb_mapping.occupancy import rasterise
 from afkb_mapping.places import Place
 from afkb_mapping.room_lookup import RoomLookup, room_id
-from afkb_mapping.rooms import Segmentation
+from afkb_mapping.rooms import Segmentation, segment_rooms
 from afkb_mapping.tracks import ObservedTrack, PredictedTrack
-from afkb_mapping.whole_room import rooms_or_whole
 
 SEEN_RELIABLY = ("SupportAbility",)
 """Features whose absence from a visited room says something: their detectors overlook little."""
@@ -56,7 +55,7 @@ class MapContent:
 
 def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> TopologicalMap:
     """The `TopologicalMap` of a mapper's content."""
-    segmentation = rooms_or_whole(content.grid)
+    segmentation = segment_rooms(content.grid)
     lookup = RoomLookup(segmentation, content.grid)
     observed = observed_entities(content.tracks, content.network)
     known = {e.id for e in observed}
