@@ -89,9 +89,7 @@ def inside(thing: dict[str, Any], xy: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 def score_supports(run: Run, truth: dict[str, Any]) -> dict[str, Any]:
     things = [t for t in truth["things"] if t["category"] not in NOT_A_SUPPORT]
-    claims = [
-        (i, d) for i, d in run.of("SupportAbility") if not d.measures.get("is_floor")
-    ]
+    claims = [(i, d) for i, d in run.of("SupportAbility") if not d.measures.get("is_floor")]
     rows, errors = [], []
     for thing in things:
         if thing["top_pixels"] < SEEN_WELL_TOP_PIXELS:

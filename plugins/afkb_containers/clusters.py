@@ -4,25 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import StrEnum
 
 import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from afkb_containers.stand import Stand
 from afkb_surfaces.noise import depth_sigma
 
-
 MAX_GRID_CELLS = 4_000_000
-
-
-class Stand(StrEnum):
-    """What a thing stands on."""
-
-    ON_SUPPORT = "on_support"
-    HIDDEN = "hidden"
-    ON_FLOOR = "on_floor"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

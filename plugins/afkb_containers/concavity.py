@@ -24,7 +24,7 @@ MIN_PENETRATION_M = 0.02
 
 @dataclass(frozen=True, slots=True)
 class Opening:
-    """An opening upwards: rim height above the floor and depth seen below it (m), evidence.
+    """An opening upwards: rim height above the floor, depth seen below it, width across (m).
 
     `sight_share`: depth seen, as a share of what sight lines through that rim could show.
     `rim_share`: how much of the way around the rim is seen; `n_inside`: pixels seen inside.
@@ -32,6 +32,7 @@ class Opening:
 
     rim_height_m: float
     depth_m: float
+    width_m: float
     rim_share: float
     inside_share: float
     sight_share: float
@@ -65,7 +66,9 @@ def find_opening(
         & (penetration > max(MIN_PENETRATION_M, 4 * cluster.sigma_m))
     )
     index = np.flatnonzero(deep)
-    inside = index[_inside(hull, crossing[index], 0.002) & _inside(hull, cluster.points[index], -0.01)]
+    inside = index[
+        _inside(hull, crossing[index], 0.002) & _inside(hull, cluster.points[index], -0.01)
+    ]
     if len(inside) < min_inside:
         return None
     through = _inside(hull, crossing, 0.0)
@@ -75,7 +78,8 @@ def find_opening(
     across = hull.reshape(-1, 2) @ along
     sight = float((across.max() - across.min()) * np.median(_steepness(ray[inside])))
     shown = len(inside) / max(int(through.sum()), 1)
-    return Opening(rim, depth, share, shown, depth / max(sight, 1e-3), len(inside))
+    width = float(np.sqrt(max(cv2.contourArea(hull), 1e-6)))
+    return Opening(rim, depth, width, share, shown, depth / max(sight, 1e-3), len(inside))
 
 
 def _steepness(ray: NDArray[np.float64]) -> NDArray[np.float64]:

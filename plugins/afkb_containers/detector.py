@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
-from afkb_containers.clusters import Cluster, Stand, clusters_from_above, surroundings
+from afkb_containers.clusters import Cluster, clusters_from_above, surroundings
 from afkb_containers.concavity import find_opening
 from afkb_containers.hidden import things_on_hidden_supports, things_on_the_floor
 from afkb_containers.judge import LEAST_CLAIM, container_detection, judge
 from afkb_containers.scene import Scene
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import sides_from_above, solid_of
+from afkb_containers.stand import Stand
 from afkb_containers.sunk import sunk_containers
 from afkb_surfaces.settings import membership
 
@@ -72,8 +73,7 @@ class ContainerDetector:
         self, cluster: Cluster, scene: Scene, mine: NDArray[np.int32], name: int
     ) -> Detection | None:
         s = self.settings
-        sides = s.bin_size_m if cluster.stand is Stand.ON_FLOOR else s.size_m
-        size = membership(sides_from_above(cluster)[0], sides)
+        size = membership(sides_from_above(cluster)[0], s.sides_m(cluster.stand))
         if size <= 0:
             return None
         mine[cluster.v, cluster.u] = name

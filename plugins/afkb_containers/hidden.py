@@ -9,8 +9,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from afkb_containers.clusters import Cluster, Stand
+from afkb_containers.clusters import Cluster
 from afkb_containers.scene import Scene
+from afkb_containers.stand import Stand
 from afkb_surfaces.noise import depth_sigma
 
 NEAREST_FLOOR_M = 0.25

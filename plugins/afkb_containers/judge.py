@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from afkb.flow import Detection
-from afkb_containers.clusters import Cluster, Stand
+from afkb_containers.clusters import Cluster
 from afkb_containers.concavity import Opening
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import Solid
+from afkb_containers.stand import Stand
 from afkb_surfaces.describe import box_around, on_grid
 from afkb_surfaces.settings import membership
 
@@ -45,16 +46,19 @@ def judge(
     settings: ContainerSettings,
 ) -> Verdict:
     """Weigh an opening against a closed body; `size` is how well the thing's size fits, 0 to 1."""
-    depth = settings.bin_depth_m if cluster.stand is Stand.ON_FLOOR else settings.depth_m
     open_p = 0.0
     if opening is not None and opening.rim_share >= 0.5:
-        deep = membership(opening.depth_m, depth)
-        if opening.sight_share >= SIGHT_SHARE and deep > 0:
+        deep = membership(opening.depth_m / opening.width_m, settings.depth_over_opening)
+        if opening.sight_share >= SIGHT_SHARE:
             deep = max(deep, 0.9)
+        if cluster.stand is Stand.ON_FLOOR:
+            deep *= membership(opening.depth_m, settings.bin_depth_m)
         around = min(1.0, (opening.rim_share - 0.5) / 0.3)
         seen = min(1.0, opening.inside_share / 0.15)
         open_p = 0.95 * size * solid.whole * deep * (0.3 + 0.7 * around) * (0.3 + 0.7 * seen)
     closed_p = CLOSED[cluster.stand] * solid.degree * size * (1 - open_p)
+    if cluster.stand is Stand.HIDDEN:
+        closed_p *= membership(solid.length_m, settings.hidden_size_m)
     return Verdict(open_p, closed_p * (CUT if cluster.cut_by_image else 1.0))
 
 
@@ -103,6 +107,7 @@ def _measures(
     if opening is not None:
         measures |= {
             "depth": opening.depth_m,
+            "opening_width": opening.width_m,
             "rim_share": opening.rim_share,
             "sight_share": opening.sight_share,
             "inside_share": opening.inside_share,

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from afkb_containers.stand import Stand
 from afkb_surfaces.settings import Limits, parameters
 
 if TYPE_CHECKING:
@@ -17,15 +18,19 @@ class ContainerSettings:
     """Limits of the container detector, m; trapezoids as (z1, n1, n2, z2).
 
     - `size_m`: longer side, seen from above, of a thing that stands on a support.
-    - `depth_m`: how deep an opening is; `solid_height_m`, `solid_thickness_m`: of a closed body,
+    - `depth_over_opening`: of an opening, unless a sight line could show no more of it;
+      `max_extent_m`: of a closed body (both stated by the ontology). `solid_height_m`, `solid_thickness_m`: of a closed body,
       which keep books, frames, screens and game controllers out.
     - `core_m`: what rises less over its support, a magazine or a cloth, joins nothing.
-    - `bin_size_m`, `bin_depth_m`: the same as `size_m` and `depth_m` for what stands on the floor.
+    - `hidden_size_m`: `size_m` of a closed body whose support isn't seen.
+    - `bin_size_m`: `size_m` of what stands on the floor; `bin_depth_m`: least depth of its opening.
     - `above_m`: lowest and highest point of a thing over its support that is looked at.
     """
 
     size_m: Limits = (0.035, 0.05, 0.35, 0.60)
-    depth_m: Limits = (0.008, 0.025, math.inf, math.inf)
+    depth_over_opening: Limits = (0.10, 0.25, 10.0, 20.0)
+    max_extent_m: Limits = (0.02, 0.05, 0.6, 1.0)
+    hidden_size_m: Limits = (0.035, 0.05, 0.20, 0.35)
     bin_size_m: Limits = (0.12, 0.18, 0.65, 0.85)
     bin_depth_m: Limits = (0.05, 0.10, math.inf, math.inf)
     solid_height_m: Limits = (0.060, 0.075, 0.35, 0.50)
@@ -35,6 +40,10 @@ class ContainerSettings:
     min_pixels: int = 90
     cell_m: float = 0.01
 
+    def sides_m(self, stand: Stand) -> Limits:
+        """Limits of the longer side of a thing, by what it stands on."""
+        return self.bin_size_m if stand is Stand.ON_FLOOR else self.size_m
+
     @classmethod
     def from_knowledge(cls, knowledge_base: KnowledgeBase) -> ContainerSettings:
         """The limits that the features state in the ontology; what they leave out stays."""
@@ -42,7 +51,6 @@ class ContainerSettings:
         solid = parameters(knowledge_base, "IntrinsicContainAbility")
         base = cls()
         return cls(
-            depth_m=opening.get("opening_depth_m", base.depth_m),
-            solid_height_m=solid.get("solid_height_m", base.solid_height_m),
-            solid_thickness_m=solid.get("solid_thickness_m", base.solid_thickness_m),
+            depth_over_opening=opening.get("depth_over_opening", base.depth_over_opening),
+            max_extent_m=solid.get("max_extent_m", base.max_extent_m),
         )

@@ -31,6 +31,7 @@ class Solid:
     degree: float
     height_m: float
     thickness_m: float
+    length_m: float
     solidity: float
     whole: float
 
@@ -44,13 +45,14 @@ def solid_of(cluster: Cluster, base_m: float, settings: ContainerSettings) -> So
     fill = image_solidity(cluster)
     degree = (
         membership(height, settings.solid_height_m)
+        * membership(max(height, length), settings.max_extent_m)
         * membership(width - UNSURE * cluster.sigma_m, settings.solid_thickness_m)
         * (1.0 - _ramp(lean, LEAN_DEG))
         * _ramp(fill, SOLIDITY)
     )
     if max(height, length) > SLENDER * max(width, 1e-3):
         degree = 0.0
-    return Solid(degree, height, width, fill, _ramp(fill, WHOLE))
+    return Solid(degree, height, width, length, fill, _ramp(fill, WHOLE))
 
 
 def _ramp(value: float, limits: tuple[float, float]) -> float:

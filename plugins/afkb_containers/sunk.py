@@ -85,9 +85,7 @@ def _in_support(
     hull[top > 0] = 0
     rows, cols = scene.depth_m.shape
     box = support.image_box or (0, 0, cols, rows)
-    deepest = _holes(
-        scene.depth_m, scene.points, scene.camera_xyz, height_m, hull, origin, box
-    )
+    deepest = _holes(scene.depth_m, scene.points, scene.camera_xyz, height_m, hull, origin, box)
     open_ = cv2.morphologyEx((deepest > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3)))
     count, parts, stats, _ = cv2.connectedComponentsWithStats(open_, connectivity=4)
     for k in range(1, count):

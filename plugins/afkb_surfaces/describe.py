@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from afkb.flow import Detection, OrientedBox
 from numpy.typing import NDArray
 
+from afkb.flow import Detection, OrientedBox
 from afkb_surfaces.noise import depth_sigma
 from afkb_surfaces.settings import SurfaceSettings, membership
 

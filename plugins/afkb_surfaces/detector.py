@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from afkb.flow import Detection, View
 from numpy.typing import NDArray
 
+from afkb.flow import Detection, View
 from afkb_surfaces.borders import missing_border_fractions
 from afkb_surfaces.cells import cell_planes, cell_sums
 from afkb_surfaces.describe import (

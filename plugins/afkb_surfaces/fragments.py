@@ -47,9 +47,7 @@ def _seen_through(
 
 
 @njit(cache=True)
-def _closest(
-    p: NDArray[np.float64], q: NDArray[np.float64]
-) -> tuple[float, int, int]:
+def _closest(p: NDArray[np.float64], q: NDArray[np.float64]) -> tuple[float, int, int]:
     """Smallest squared distance between two sets of points (N, 2), and the indexes of that pair."""
     best, bi, bj = np.inf, 0, 0
     for i in range(p.shape[0]):

@@ -37,9 +37,7 @@ def classify(
 
 
 @njit(cache=True)
-def _one_surface(
-    p: NDArray[np.float64], q: NDArray[np.float64], kind: int, step_m: float
-) -> bool:
+def _one_surface(p: NDArray[np.float64], q: NDArray[np.float64], kind: int, step_m: float) -> bool:
     """Whether two neighbouring cells of a kind lie on one surface."""
     tolerance = step_m + depth_sigma(p[DEPTH])
     forth = back = 0.0

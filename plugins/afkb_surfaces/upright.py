@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from afkb.flow import Detection, OrientedBox
 from numpy.typing import NDArray
 
+from afkb.flow import Detection, OrientedBox
 from afkb_surfaces.cells import CELL, DEPTH, X, Z
 from afkb_surfaces.noise import depth_sigma
 from afkb_surfaces.settings import SurfaceSettings, membership
@@ -60,9 +60,7 @@ def upright_detection(
     )
 
 
-def fitted_segment(
-    xy: NDArray[np.float64], margin_m: float
-) -> tuple[NDArray[np.float64], float]:
+def fitted_segment(xy: NDArray[np.float64], margin_m: float) -> tuple[NDArray[np.float64], float]:
     """End points (2, 2) of the line through points seen from above, and their rms about it, m."""
     centre = xy.mean(axis=0)
     _, axes = np.linalg.eigh(np.cov((xy - centre).T) if len(xy) > 2 else np.eye(2))
