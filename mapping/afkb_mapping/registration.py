@@ -121,6 +121,8 @@ class ScanRegistration:
         self, scan: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array
     ) -> Match | None:
         """The match from odometry's pose; where that explains little, the coarse search's best."""
+        if len(scan) < MIN_POINTS:
+            return None
         nowhere = np.zeros(3)
         match = refine(scan, local_map, pivot, nowhere, _inverse(prior), nowhere)
         near = _deviation(match, prior) <= MAX_DEVIATION

@@ -14,8 +14,9 @@ from afkb.flow import LaserScan
 
 Points = NDArray[np.float64]
 
-WINDOW_M = 0.12
-"""Half length of wall that a normal is fitted to: noise of 1 cm then tilts it by a few degrees."""
+WINDOWS_M = (0.12, 0.4)
+"""Half lengths of wall that a normal is fitted to: over the first, noise of 1 cm tilts it by a few
+degrees; the second is for points where a noisier laser (3 cm) shows no line over the first."""
 WINDOW_BEAMS = 2
 """Least number of neighbours on either side; where beams are sparse the window is that long."""
 GAP_M = 0.25
@@ -63,8 +64,11 @@ def surface_of(scan: LaserScan) -> SurfacePoints:
     points = scan.points_xy
     if len(points) < 3:
         return SurfacePoints(np.empty((0, 2)), np.empty((0, 2)))
-    first, last = _windows(points)
-    normals, straight = _fit_lines(points, first, last)
+    normals, straight = _fit_lines(points, *_windows(points, WINDOWS_M[0]))
+    if not straight.all():
+        wide_normals, wide_straight = _fit_lines(points, *_windows(points, WINDOWS_M[1]))
+        normals = np.where(straight[:, None], normals, wide_normals)
+        straight |= wide_straight
     facing = -(normals * points).sum(axis=1) / np.linalg.norm(points, axis=1)
     normals *= np.where(facing < 0, -1.0, 1.0)[:, None]
     straight &= np.abs(facing) > GRAZING
@@ -80,13 +84,13 @@ def pieces_of(points: Points) -> NDArray[np.intp]:
     return np.concatenate([[0], np.cumsum(torn)])
 
 
-def _windows(points: Points) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _windows(points: Points, half_m: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Half-open index ranges of the points that share each point's piece of surface."""
     piece = pieces_of(points)
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     index = np.arange(len(points))
-    first = np.minimum(np.searchsorted(arc, arc - WINDOW_M), index - WINDOW_BEAMS)
-    last = np.maximum(np.searchsorted(arc, arc + WINDOW_M, side="right"), index + WINDOW_BEAMS + 1)
+    first = np.minimum(np.searchsorted(arc, arc - half_m), index - WINDOW_BEAMS)
+    last = np.maximum(np.searchsorted(arc, arc + half_m, side="right"), index + WINDOW_BEAMS + 1)
     return (
         np.maximum(first, np.searchsorted(piece, piece)),
         np.minimum(last, np.searchsorted(piece, piece, side="right")),
