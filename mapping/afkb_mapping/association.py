@@ -19,6 +19,9 @@ SURFACE_GAP_M = 0.08
 """Where the image edge cuts a surface, its other part may begin this far on."""
 SURFACE_HEIGHT_M = 0.015
 """Parts of one surface agree in height within this and the measurement's standard deviation."""
+SOFT_HEIGHT_M, SOFT_OVERLAP = 0.06, 0.5
+"""Nothing supports right under another surface: what lies on top of each other, this near, is one
+soft or hollow seat, or a tray on its table."""
 THING_REACH_M = 0.06
 THING_HEIGHT_M = 0.06
 FAR_M = 1e3
@@ -156,9 +159,11 @@ def _continues(track: ObservedTrack, detection: Detection) -> bool:
 def _same_surface(first: ObservedTrack, second: ObservedTrack) -> bool:
     if first.is_floor or second.is_floor:
         return False
-    if abs(first.top.value - second.top.value) > SURFACE_HEIGHT_M:
+    apart = abs(first.top.value - second.top.value)
+    if apart > SOFT_HEIGHT_M:
         return False
-    return first.footprint.overlap(second.footprint.points()) >= SURFACE_OVERLAP
+    wanted = SURFACE_OVERLAP if apart <= SURFACE_HEIGHT_M else SOFT_OVERLAP
+    return first.footprint.overlap(second.footprint.points()) >= wanted
 
 
 def _overlap_in_height(track: ObservedTrack, bottom: float, top: float) -> bool:
