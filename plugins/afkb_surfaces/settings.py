@@ -59,7 +59,7 @@ def parameters(knowledge_base: KnowledgeBase, feature: str) -> Mapping[str, Limi
 def membership(value: float, limits: Limits) -> float:
     """Degree, 0 to 1, to which a value lies within a trapezoid.
 
-    >>> membership(0.8, (0.6, 1.0, 2.0, 3.0))
+    >>> membership(0.75, (0.5, 1.0, 2.0, 3.0))
     0.5
     """
     z1, n1, n2, z2 = limits
