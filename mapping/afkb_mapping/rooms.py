@@ -19,6 +19,7 @@ from afkb_mapping.free_space import Mask, free_space, seen_space
 from afkb_mapping.room_borders import cut_at_doorways
 
 Labels = NDArray[np.int32]
+Box = tuple[int, int, int, int]
 
 WIDEST_DOOR_M = 2.4
 """A wider passage joins: openings without a door, as between kitchen and dining room."""
@@ -82,23 +83,40 @@ def _basins(clearance: NDArray[np.float32]) -> Labels:
 
 def _absorb_niches(labels: Labels, clearance: NDArray[np.float32], least_cells: float) -> Labels:
     """Small basins given to the neighbour with the widest passage; without one, dropped."""
-    labels = labels.copy()
-    while True:
-        sizes = np.bincount(labels.ravel())
-        sizes[0] = 0
-        small = np.flatnonzero((sizes > 0) & (sizes < least_cells))
-        if not len(small):
-            return labels
+    labels = np.pad(labels, 1)
+    width = np.pad(clearance, 1)
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    boxes = [(0, 0, 0, 0), *(_box(window) for window in ndimage.find_objects(labels))]
+    while (small := np.flatnonzero((sizes > 0) & (sizes < least_cells))).size:
         label = int(small[np.argmin(sizes[small])])
-        labels[labels == label] = _widest_neighbour(labels, label, clearance)
+        top, left, bottom, right = boxes[label]
+        around = np.s_[top - 1 : bottom + 1, left - 1 : right + 1]
+        heir = _widest_neighbour(labels[around], label, width[around])
+        labels[around][labels[around] == label] = heir
+        if heir:
+            sizes[heir] += sizes[label]
+            boxes[heir] = _union(boxes[heir], boxes[label])
+        sizes[label] = 0
+    return labels[1:-1, 1:-1]
+
+
+def _box(window: tuple[slice, slice] | None) -> Box:
+    """Top, left, bottom, right (half-open) of a window; zeros for none."""
+    if window is None:
+        return (0, 0, 0, 0)
+    rows, cols = window
+    return (rows.start, cols.start, rows.stop, cols.stop)
+
+
+def _union(a: Box, b: Box) -> Box:
+    return (min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3]))
 
 
 def _widest_neighbour(labels: Labels, label: int, clearance: NDArray[np.float32]) -> int:
-    rows, cols = np.nonzero(labels == label)
-    window = np.s_[max(rows.min() - 1, 0) : rows.max() + 2, max(cols.min() - 1, 0) : cols.max() + 2]
-    part, width = labels[window], clearance[window]
-    rim = ndimage.binary_dilation(part == label, np.ones((3, 3))) & (part != label) & (part > 0)
-    return int(part[rim][np.argmax(width[rim])]) if rim.any() else 0
+    rim = ndimage.binary_dilation(labels == label, np.ones((3, 3)))
+    rim &= (labels != label) & (labels > 0)
+    return int(labels[rim][np.argmax(clearance[rim])]) if rim.any() else 0
 
 
 def _numbered(labels: Labels) -> Labels:
