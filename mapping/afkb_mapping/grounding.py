@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +19,19 @@ HEIGHT_TOLERANCE_M = 0.06
 DIRECTIONS = 8
 KIND_OF_ORDER = {1: NodeKind.DUAL, 2: NodeKind.CO_OCCURRENCE}
 
-Unknown = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
-"""Tells for points (N, 2) of the map frame whether the grid knows nothing about them."""
+WALL_STEP_M = 0.05
+
+
+class KnownCells(Protocol):
+    """What the grid so far tells about points (N, 2) of the map frame: (N,) each."""
+
+    def unknown(self, points_xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether nothing has been seen there."""
+        ...
+
+    def occupied(self, points_xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether something stands there."""
+        ...
 
 
 def ground(
@@ -27,15 +39,16 @@ def ground(
     anchors: Sequence[ObservedTrack],
     foot_hidden: bool,
     view: View,
-    unknown: Unknown,
+    cells: KnownCells,
 ) -> PredictedTrack | None:
     """The region of a hypothesis, or None where everything about it has been looked at.
 
     What is below or on its anchors lies under their common outline; what is near them lies at its
-    typical distance, on the side that has not been seen yet. It has no id before it is kept.
+    typical distance, on a side that has not been seen yet and that no wall parts from them. It has
+    no id before it is kept.
     """
     region = (
-        _near(hypothesis, anchors, unknown)
+        _near(hypothesis, anchors, cells)
         if hypothesis.relation is Relation.NEAR
         else _under(anchors)
     )
@@ -69,14 +82,23 @@ def _under(anchors: Sequence[ObservedTrack]) -> Region:
 
 
 def _near(
-    hypothesis: Hypothesis, anchors: Sequence[ObservedTrack], unknown: Unknown
+    hypothesis: Hypothesis, anchors: Sequence[ObservedTrack], cells: KnownCells
 ) -> Region | None:
-    anchor = np.concatenate([a.footprint.points() for a in anchors]).mean(axis=0)
+    anchor_points = np.concatenate([a.footprint.points() for a in anchors])
+    anchor = anchor_points.mean(axis=0)
+    reach = float(np.linalg.norm(anchor_points - anchor, axis=1).max())
     angles = np.arange(DIRECTIONS) * 2 * np.pi / DIRECTIONS
-    centers = anchor + hypothesis.distance_m[0] * np.column_stack([np.cos(angles), np.sin(angles)])
+    headings = np.column_stack([np.cos(angles), np.sin(angles)])
+    centers = anchor + hypothesis.distance_m[0] * headings
     half = np.maximum(np.asarray(hypothesis.size_xy_m), 0.2) / 2
     offsets = np.stack(np.meshgrid(*[np.linspace(-h, h, 5) for h in half]), axis=-1).reshape(-1, 2)
-    shares = [float(unknown(center + offsets).mean()) for center in centers]
+    way = np.arange(reach, hypothesis.distance_m[0] + half.max(), WALL_STEP_M)[:, None]
+    shares = [
+        0.0
+        if cells.occupied(anchor + way * heading).any()
+        else float(cells.unknown(center + offsets).mean())
+        for center, heading in zip(centers, headings, strict=True)
+    ]
     best = int(np.argmax(shares))
     if shares[best] < 0.5:
         return None

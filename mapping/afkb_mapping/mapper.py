@@ -44,6 +44,7 @@ class AffordanceMapper:
         self._predictions: list[PredictedTrack] = []
         self._closures: list[Closure] = []
         self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
+        self._looked_from: list[NDArray[np.float64]] = []
         self._refuted = 0
 
     def add(
@@ -72,6 +73,7 @@ class AffordanceMapper:
             grid=self._grid.grid(),
             closures=self._closures,
             trajectory=self._trajectory,
+            looked_from=self._looked_from,
             counts={
                 "births": self._association.births,
                 "merges": self._association.merges,
@@ -83,6 +85,8 @@ class AffordanceMapper:
     def _enter(self, view: View) -> None:
         assert view.T_map_base is not None
         self._trajectory.append((view.stamp, view.T_map_base))
+        if view.depth_m is not None:
+            self._looked_from.append(view.T_map_base[:2, 3])
         insert_view(self._grid, view)
 
     def _confirm(self, observed: Sequence[ObservedTrack | None], view: View) -> None:
@@ -124,7 +128,7 @@ class AffordanceMapper:
             if not anchors:
                 continue
             hidden = not any("support_height" in detections[i].measures for i in hypothesis.anchors)
-            track = ground(hypothesis, anchors, hidden, view, self._grid.unknown)
+            track = ground(hypothesis, anchors, hidden, view, self._grid)
             if track is not None and not self._fulfilled(track):
                 expected.append(track)
         return expected

@@ -135,12 +135,20 @@ class GridBuilder:
 
     def unknown(self, points_xy: Points) -> NDArray[np.bool_]:
         """(N,) for points (N, 2): whether nothing has been seen in their cells yet."""
+        return ~self._at(points_xy, self._seen)
+
+    def occupied(self, points_xy: Points) -> NDArray[np.bool_]:
+        """(N,) for points (N, 2): whether their cells are more likely occupied than free."""
+        return self._at(points_xy, self._log_odds > 0)
+
+    def _at(self, points_xy: Points, cells_where: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """(N,) value of a mask at points, False outside it."""
         cells = self._cells(points_xy)
-        inside = ((cells >= 0) & (cells < self._seen.shape[::-1])).all(axis=1)
-        unseen = np.ones(len(points_xy), dtype=bool)
+        inside = ((cells >= 0) & (cells < cells_where.shape[::-1])).all(axis=1)
+        found = np.zeros(len(points_xy), dtype=bool)
         cols, rows = cells[inside].T
-        unseen[inside] = ~self._seen[rows, cols]
-        return unseen
+        found[inside] = cells_where[rows, cols]
+        return found
 
     def grid(self) -> OccupancyGrid:
         """The grid so far, cut to what was seen; one unknown cell where nothing was."""

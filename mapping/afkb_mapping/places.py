@@ -14,6 +14,8 @@ PLACE_SPACING_M = 1.0
 """A robot that turns on the spot, or moves less than this, stays at its place."""
 FAMILIAR_SHARE = 0.5
 """A view belongs to a place from which at least this share of its entities was already seen."""
+FAR_PLACE_M = 5.0
+"""Where nothing affords anything, in a corridor or with a laser alone, a new place begins here."""
 SAME_PLACE_M = 2.5
 """Beyond this distance a view belongs to no earlier place, however much of it is familiar."""
 
@@ -58,10 +60,11 @@ class Places:
             return None
         near = sorted(self.places, key=lambda p: float(np.hypot(p.x - xy[0], p.y - xy[1])))
         nearest = near[0]
-        if np.hypot(nearest.x - xy[0], nearest.y - xy[1]) < PLACE_SPACING_M:
+        apart = np.hypot(nearest.x - xy[0], nearest.y - xy[1])
+        if apart < PLACE_SPACING_M:
             return nearest
         if not entities:
-            return self.current
+            return self.current if apart < FAR_PLACE_M else None
         for place in near:
             if np.hypot(place.x - xy[0], place.y - xy[1]) > SAME_PLACE_M:
                 break

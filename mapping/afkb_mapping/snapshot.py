@@ -38,7 +38,11 @@ STEP_M = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MapContent:
-    """What a mapper knows when it is asked for the map."""
+    """What a mapper knows when it is asked for the map.
+
+    `trajectory`: stamp (s) and T_map_base (4, 4) of every view; `looked_from`: (2,) m, where the
+    base stood when depth was taken.
+    """
 
     knowledge_base: KnowledgeBase
     network: Network
@@ -50,6 +54,7 @@ class MapContent:
     grid: OccupancyGrid
     closures: Sequence[Closure]
     trajectory: Sequence[tuple[float, NDArray[np.float64]]]
+    looked_from: Sequence[NDArray[np.float64]]
     counts: Mapping[str, int]
 
 
@@ -114,11 +119,12 @@ def _rooms(
     """Rooms with the posterior that the affordances in them give (paper §II.F)."""
     visited = {p.room for p in places}
     visited |= {lookup.room_at(T[0, 3], T[1, 3]) for _, T in content.trajectory}
+    looked_at = {lookup.room_at(*xy) for xy in content.looked_from}
     rooms = []
     for shape in segmentation.rooms:
         id_ = room_id(shape.label)
         counts: Counter[str] = Counter()
-        if id_ in visited:
+        if id_ in looked_at:
             counts.update(dict.fromkeys(content.network.evidence_looked_for(SEEN_RELIABLY), 0))
         for entity in entities:
             if entity.room == id_ and entity.kind is NodeKind.OBSERVED:

@@ -31,6 +31,7 @@ class ObservedOnlyMapper:
         self._bounds = BoundMerger()
         self._grid = GridBuilder()
         self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
+        self._looked_from: list[NDArray[np.float64]] = []
 
     def add(
         self, view: View, detections: Sequence[Detection], hypotheses: Sequence[Hypothesis]
@@ -38,6 +39,8 @@ class ObservedOnlyMapper:
         """Take in what was seen in one placed view."""
         assert view.T_map_base is not None
         self._trajectory.append((view.stamp, view.T_map_base))
+        if view.depth_m is not None:
+            self._looked_from.append(view.T_map_base[:2, 3])
         insert_view(self._grid, view)
         seen = [t for t in self._association.match(view, detections) if t is not None]
         place = self._places.visit(view, {t.id: None for t in seen if not t.is_floor})
@@ -60,6 +63,7 @@ class ObservedOnlyMapper:
             grid=self._grid.grid(),
             closures=(),
             trajectory=self._trajectory,
+            looked_from=self._looked_from,
             counts={"births": self._association.births, "merges": self._association.merges},
         )
         return snapshot(content, T_map_source)

@@ -10,11 +10,17 @@ T_BASE_CAMERA = np.array([[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 1.2], [0, 0, 0
 DUAL = "https://example.org/dual"
 
 
-def view(index=0, x=0.0, y=0.0, yaw=0.0, depth_m=2.0):
-    """A robot at a pose that looks at a flat wall `depth_m` ahead, with a scan of a round room."""
+def view(index=0, x=0.0, y=0.0, yaw=0.0, depth_m=2.0, open_ahead=False):
+    """A robot at a pose that looks at a flat wall `depth_m` ahead, with a scan of a round room.
+
+    `open_ahead`: the scan has no returns ahead, so that the map knows nothing there.
+    """
+    ranges = np.full(360, 3.0, np.float32)
+    if open_ahead:
+        ranges[120:240] = np.inf
     T = T_from_xy_yaw(x, y, yaw)
     depth = np.full((CAMERA.height, CAMERA.width), depth_m, np.float32)
-    scan = LaserScan(np.full(360, 3.0, np.float32), -np.pi, np.deg2rad(1), 0.1, 10.0)
+    scan = LaserScan(ranges, -np.pi, np.deg2rad(1), 0.1, 10.0)
     return View(
         index,
         index / 2,

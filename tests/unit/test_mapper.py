@@ -90,12 +90,19 @@ def test_what_is_hidden_does_not_fade(mapper):
 
 def test_what_co_occurs_is_expected_where_nothing_has_been_seen(mapper):
     chair = support(2.8, 0.0, z=0.45, width=0.4, depth=0.4)
-    mapper.add(view(), [chair], [support_near(0)])
+    mapper.add(view(open_ahead=True), [chair], [support_near(0)])
     found = mapper.finish(np.eye(4))
     (prediction,) = of_kind(found, NodeKind.CO_OCCURRENCE)
     assert prediction.existence == 0.65
-    # The scan's free circle has a radius of 3 m around the robot: the table is behind it.
-    assert np.hypot(*prediction.position_xyz[:2]) > 3.0
+    assert np.hypot(prediction.position_xyz[0] - 2.8, prediction.position_xyz[1]) == pytest.approx(
+        0.7, abs=0.05
+    )
+
+
+def test_nothing_is_expected_behind_a_wall(mapper):
+    chair = support(2.7, 0.0, z=0.45, width=0.4, depth=0.4)
+    mapper.add(view(), [chair], [support_near(0)])
+    assert not of_kind(mapper.finish(np.eye(4)), NodeKind.CO_OCCURRENCE)
 
 
 def test_one_cup_seen_thirty_times_is_one_node(mapper):
