@@ -24,7 +24,7 @@ SEEN_GAP_M = 2.0
 """Space between seen things up to this wide lies in the same room, where no floor was seen."""
 FURNITURE_M = 2.4
 """An island in the free space no longer than this is furniture (a bed, a sofa, a cabinet),"""
-PARTITION_M = (1.0, 0.35)
+PARTITION_M = (0.75, 0.35)
 """unless it is at least this long and at most this thick: a piece of wall."""
 
 
