@@ -1,6 +1,6 @@
 """Score the depth detectors against a recording whose truth is known.
 
-python -m bench.detectors ../shared/data/homes/merom/bag --truth ../shared/data/homes/merom/truth.json
+python -m bench.detectors HOME/bag --truth HOME/truth.json [--json] [--wrong] [--stride N]
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ NOT_A_SUPPORT = ("carpet", "window", "door", "picture", "mirror")
 HOLLOW = ("mug", "bowl", "cups", "pitcher")
 CLOSED = ("box", "can", "bottle", "cleanser")
 LARGE_CONTAINERS = ("basket", "trash_can", "bathtub", "sink", "toilet")
-NO_CONTAINER = ("trash_can_lid",)
 
 
 @dataclass
@@ -242,7 +241,10 @@ def score(run: Run, truth: dict[str, Any]) -> dict[str, Any]:
 
 def table(result: dict[str, Any]) -> Iterator[str]:
     s, c = result["supports"], result["containers"]
-    yield f"supports   recall {s['recall']:.2f} of {s['seen_well']}, precision {s['precision']:.3f} of {s['claims']}"
+    yield (
+        f"supports   recall {s['recall']:.2f} of {s['seen_well']}, "
+        f"precision {s['precision']:.3f} of {s['claims']}"
+    )
     if s["height_error_median_m"] is not None:
         yield (
             f"  height error median {1e3 * s['height_error_median_m']:.1f} mm, "
@@ -258,7 +260,10 @@ def table(result: dict[str, Any]) -> Iterator[str]:
     for kind in ("hollow", "closed", "large"):
         yield f"  {kind} recall {c[kind]['recall']:.2f}"
         for row in c[kind]["things"]:
-            yield f"    {row['name']:28} {row['most_pixels']:6d} px views {row['views']} closed {row['as_closed']} top {row['top_error']}"
+            yield (
+                f"    {row['name']:28} {row['most_pixels']:6d} px views {row['views']} "
+                f"closed {row['as_closed']} top {row['top_error']}"
+            )
     for name, ms in result["milliseconds"].items():
         yield f"{name:10} median {ms['median']:.1f} ms, 95 % {ms['p95']:.1f} ms"
 

@@ -196,10 +196,10 @@ def label_things(
     low_m: float,
     high_m: float,
 ) -> tuple[NDArray[np.int16], NDArray[np.float32]]:
-    """Support, from 1, that each pixel's point stands on: (H, W); 0 none, -1 the support itself,
-    ON_WALL an upright plane.
+    """Say which support each pixel's point stands on, from 1, and how high over it.
 
-    With it, how high the point is over that support, m: (H, W) float32.
+    Returns labels (H, W), 0 where there is none, -1 on a support or the floor itself, ON_WALL on
+    an upright plane; and heights over the support (H, W) float32, m.
 
     `slope` (3,): what one metre of depth changes in height is slope . (u, v, 1).
     """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -89,7 +90,7 @@ def clusters_from_above(
     of[on_grid] = names[ij[on_grid, 0], ij[on_grid, 1]]
     order = np.argsort(of, kind="stable")
     starts = np.searchsorted(of[order], np.arange(1, int(names.max()) + 2))
-    for begin, end in zip(starts[:-1], starts[1:], strict=True):
+    for begin, end in pairwise(starts):
         member = order[begin:end]
         if len(member) >= min_pixels and tall[member].sum() >= min_pixels // 2:
             v, u = np.divmod(flat[member], depth_m.shape[1])

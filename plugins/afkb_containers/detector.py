@@ -53,7 +53,7 @@ class ContainerDetector:
         mine = np.zeros(scene.depth_m.shape, np.int32)
         judged = (self._detection(c, scene, mine, name) for name, c in enumerate(things, start=1))
         found = [d for d in judged if d is not None]
-        return found + list(sunk_containers(scene, self.name))
+        return found + list(sunk_containers(scene, s, self.name))
 
     def _on_supports(self, scene: Scene) -> Iterator[Cluster]:
         s, flat_labels = self.settings, scene.labels.ravel()

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from afkb_containers.above import FLOOR_M
 from afkb_containers.clusters import Cluster
 from afkb_containers.scene import Scene
 from afkb_containers.stand import Stand
@@ -23,7 +24,6 @@ WIDEST_M = 0.75
 TALLEST_M = 0.5
 BIN_M = (0.15, 0.85)
 """Lowest and highest rim of what stands on the floor: bins, baskets, boxes."""
-FLOOR_M = 0.04
 HIDDEN_SHARE = 0.6
 """Share of a thing's lower outline that something nearer must cover."""
 

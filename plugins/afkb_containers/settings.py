@@ -18,9 +18,13 @@ class ContainerSettings:
     """Limits of the container detector, m; trapezoids as (z1, n1, n2, z2).
 
     - `size_m`: longer side, seen from above, of a thing that stands on a support.
-    - `depth_over_opening`: of an opening, unless a sight line could show no more of it;
-      `max_extent_m`: of a closed body (both stated by the ontology). `solid_height_m`, `solid_thickness_m`: of a closed body,
-      which keep books, frames, screens and game controllers out.
+    - `depth_over_opening`: of an opening, unless a sight line could show no more of it, and
+      `max_extent_m`, of a closed body: both as the ontology states them.
+    - `solid_height_m`, `solid_thickness_m`: of a closed body, which keep books, frames, screens
+      and game controllers out.
+    - `hidden_size_m`: `size_m` of a closed body whose support isn't seen.
+    - `bin_size_m`: `size_m` of what stands on the floor; `bin_depth_m`: depth of its opening.
+    - `basin_width_m`: shorter side of what is let into a support.
     - `core_m`: what rises less over its support, a magazine or a cloth, joins nothing.
     - `hidden_size_m`: `size_m` of a closed body whose support isn't seen.
     - `bin_size_m`: `size_m` of what stands on the floor; `bin_depth_m`: least depth of its opening.
@@ -33,6 +37,7 @@ class ContainerSettings:
     hidden_size_m: Limits = (0.035, 0.05, 0.20, 0.35)
     bin_size_m: Limits = (0.12, 0.18, 0.65, 0.85)
     bin_depth_m: Limits = (0.05, 0.10, math.inf, math.inf)
+    basin_width_m: Limits = (0.10, 0.20, math.inf, math.inf)
     solid_height_m: Limits = (0.060, 0.075, 0.35, 0.50)
     solid_thickness_m: Limits = (0.018, 0.030, math.inf, math.inf)
     core_m: float = 0.032

@@ -62,7 +62,7 @@ def _ramp(value: float, limits: tuple[float, float]) -> float:
 def sides_from_above(cluster: Cluster) -> tuple[float, float]:
     """Longer and shorter side of the smallest rectangle around a thing, strays left out, m."""
     xy = cluster.points[:: max(1, len(cluster.points) // 1500), :2]
-    (cx, cy), (a, b), degrees = cv2.minAreaRect(xy.astype(np.float32))
+    (cx, cy), _, degrees = cv2.minAreaRect(xy.astype(np.float32))
     turn = np.radians(degrees)
     R = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     local = (xy - (cx, cy)) @ R

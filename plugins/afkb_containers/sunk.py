@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import cv2
@@ -10,16 +11,22 @@ from numba import njit
 from numpy.typing import NDArray
 
 from afkb.flow import Detection
+from afkb_containers.judge import LEAST_CLAIM
 from afkb_containers.scene import Scene
+from afkb_containers.settings import ContainerSettings
 from afkb_surfaces.describe import box_around
 from afkb_surfaces.noise import depth_sigma
+from afkb_surfaces.settings import membership
 
 CELL_M = 0.02
 LEAST_DEPTH_M = 0.05
+EDGE_M = 0.012
+"""What is this much lower than the rim belongs to the hole; its deepest part says how deep."""
 LEAST_AREA_M2 = 0.03
 LEAST_SUPPORT_M2 = 0.02
 ABOVE_FLOOR_M = 0.05
 RING_CELLS = 4
+ON_TOP = 2
 RING = (0.60, 0.85)
 """Share of the way around a hole on which there must be rim: none below, fully sure above."""
 
@@ -36,6 +43,7 @@ def _holes(
 ) -> NDArray[np.float32]:
     """Deepest point seen through each square of a plane's hull (X, Y), m; 0 where none is.
 
+    `hull` is 1 inside the hull and ON_TOP where the plane itself is seen.
     Whatever is seen through the hull lies in the image box of its support.
     """
     deepest = np.zeros(hull.shape, np.float32)
@@ -46,7 +54,7 @@ def _holes(
             z = depth_m[v, u]
             h = points[v, u, 2]
             under = height_m - h
-            if z <= 0 or under < LEAST_DEPTH_M + 2.0 * depth_sigma(z) or h < ABOVE_FLOOR_M:
+            if z <= 0 or under < EDGE_M + depth_sigma(z) or h < ABOVE_FLOOR_M:
                 continue
             t = drop / (camera_xyz[2] - h)
             dx, dy = points[v, u, 0] - camera_xyz[0], points[v, u, 1] - camera_xyz[1]
@@ -57,12 +65,14 @@ def _holes(
             x, y = hull.shape
             if not (0 <= i < x and 0 <= j < y and 0 <= a < x and 0 <= b < y):
                 continue
-            if hull[i, j] and hull[a, b]:
+            if hull[i, j] == 1 and hull[a, b] > 0:
                 deepest[i, j] = max(deepest[i, j], under)
     return deepest
 
 
-def sunk_containers(scene: Scene, detector: str) -> Iterator[Detection]:
+def sunk_containers(
+    scene: Scene, settings: ContainerSettings, detector: str
+) -> Iterator[Detection]:
     """Hollows in the supports of a view that are deep, wide, and ringed by their support."""
     for support in scene.supports.detections:
         height = float(support.position_xyz[2])
@@ -70,11 +80,15 @@ def sunk_containers(scene: Scene, detector: str) -> Iterator[Detection]:
             continue
         if len(support.footprint_xy) * CELL_M**2 < LEAST_SUPPORT_M2:
             continue
-        yield from _in_support(scene, support, height, detector)
+        yield from _in_support(scene, support, height, settings, detector)
 
 
 def _in_support(
-    scene: Scene, support: Detection, height_m: float, detector: str
+    scene: Scene,
+    support: Detection,
+    height_m: float,
+    settings: ContainerSettings,
+    detector: str,
 ) -> Iterator[Detection]:
     origin = support.footprint_xy.min(axis=0) - CELL_M * (RING_CELLS + 2.5)
     ij = np.floor((support.footprint_xy - origin) / CELL_M).astype(np.int32)
@@ -82,19 +96,24 @@ def _in_support(
     top[ij[:, 0], ij[:, 1]] = 1
     hull = np.zeros_like(top)
     cv2.fillConvexPoly(hull, cv2.convexHull(ij[:, ::-1]), 1)
-    hull[top > 0] = 0
+    hull[(top > 0) & (hull > 0)] = ON_TOP
     rows, cols = scene.depth_m.shape
     box = support.image_box or (0, 0, cols, rows)
     deepest = _holes(scene.depth_m, scene.points, scene.camera_xyz, height_m, hull, origin, box)
     open_ = cv2.morphologyEx((deepest > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3)))
     count, parts, stats, _ = cv2.connectedComponentsWithStats(open_, connectivity=4)
     for k in range(1, count):
-        if stats[k, cv2.CC_STAT_AREA] * CELL_M**2 >= LEAST_AREA_M2:
-            hole = parts == k
+        hole = parts == k
+        deep = float(np.percentile(deepest[hole], 95)) >= LEAST_DEPTH_M
+        if deep and stats[k, cv2.CC_STAT_AREA] * CELL_M**2 >= LEAST_AREA_M2:
             ring = _ring_share(hole, top)
             sure = min(1.0, (ring - RING[0]) / (RING[1] - RING[0]))
             if sure > 0:
-                yield _detection(hole, deepest, origin, height_m, sure, ring, support, detector)
+                found = _detection(
+                    hole, deepest, origin, height_m, sure, ring, support, settings, detector
+                )
+                if found.affords("ContainAbility", LEAST_CLAIM):
+                    yield found
 
 
 def _ring_share(hole: NDArray[np.bool_], top: NDArray[np.uint8]) -> float:
@@ -113,11 +132,15 @@ def _detection(
     sure: float,
     ring: float,
     support: Detection,
+    settings: ContainerSettings,
     detector: str,
 ) -> Detection:
     footprint = (np.argwhere(hole) + 0.5) * CELL_M + origin
     depth = float(np.percentile(deepest[hole & (deepest > 0)], 95))
     box = box_around(footprint, rim_m, CELL_M, depth)
+    length, width = box.size_xyz[:2]
+    sure *= membership(width, settings.basin_width_m)
+    sure *= membership(depth / math.sqrt(length * width), settings.depth_over_opening)
     return Detection(
         detector=detector,
         affordances={"ContainAbility": 0.9 * sure},
