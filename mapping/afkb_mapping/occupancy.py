@@ -88,11 +88,15 @@ class GridBuilder:
         ends, hit = _shortened(sensor, ends_xy, hit)
         part = self._window(np.concatenate([ends, sensor[None]]))
         verdict = np.zeros(self._log_odds[part].shape, dtype=np.int8)
-        corner = self._first_cell + np.array([part[1].start, part[0].start])
-        trace_beams(
-            verdict, sensor / self._resolution - corner, ends / self._resolution - corner, hit
-        )
+        trace_beams(verdict, self._within(sensor[None], part)[0], self._within(ends, part), hit)
         self._apply(verdict, part)
+
+    def _within(self, points_xy: Points, part: tuple[slice, slice]) -> Points:
+        """Points (N, 2) in cells of the window; rounding moves none to the next cell or out."""
+        corner = np.array([part[1].start, part[0].start])
+        cells = self._cells(points_xy) - corner
+        shifted = points_xy / self._resolution - (self._first_cell + corner)
+        return np.clip(shifted, cells, np.nextafter(cells + 1.0, 0.0))
 
     def _apply(self, verdict: NDArray[np.int8], part: tuple[slice, slice]) -> None:
         """One observation per cell: 1 occupied, -1 free, 0 not seen."""

@@ -112,3 +112,14 @@ def test_things_beyond_the_edge_extend_the_grid():
     assert at(drawn, -0.3, 0.4) == pytest.approx(0.7)
     assert at(drawn, 0.5, 0.5) == pytest.approx(0.1)
     assert np.isnan(at(drawn, -0.3, 0.9))
+
+
+def test_rounding_at_cell_edges_leads_no_beam_out_of_the_window(monkeypatch):
+    """The compiled kernel checks no bounds; as plain Python it raises where one is crossed."""
+    monkeypatch.setattr("afkb_mapping.ray_kernel.trace_beams", trace_beams.py_func)
+    for sensor_y in (-0.3, -0.2, -0.1, 0.1, 0.2):
+        angles = -np.pi + 2 * np.pi / 360 * np.arange(360)
+        ends = np.column_stack([3 * np.cos(angles), sensor_y + 3 * np.sin(angles)])
+        builder = GridBuilder()
+        builder.insert_depth_obstacles(ends, np.array([0.0, sensor_y]))
+        assert not builder.unknown(np.array([[0.0, sensor_y]]))[0]
