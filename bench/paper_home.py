@@ -20,7 +20,8 @@ import numpy as np
 from afkb.flow import NodeKind, TopologicalMap
 from afkb.plugins.host import PluginHost
 from afkb_mapping.geometry import yaw_of
-from afkb_mapping.run import Settings, make_map
+from afkb_mapping.run import make_map
+from afkb_mapping.run_record import Settings
 from afkb_simulation.truth import WorldTruth, load_truth
 
 WORLD = "world:paper_home"

@@ -12,7 +12,8 @@ from afkb.cli.state import state_of
 from afkb.errors import SourceError
 
 if TYPE_CHECKING:
-    from afkb_mapping.run import RunResult, Settings
+    from afkb_mapping.run import RunResult
+    from afkb_mapping.run_record import Settings
 
 DEMO_WORLD = "world:paper_home"
 
@@ -54,7 +55,7 @@ def map_(
     Example: afkb map my-recording/ --out my-map
     """
     from afkb.plugins.host import PluginHost
-    from afkb_mapping.run import Settings
+    from afkb_mapping.run_record import Settings
 
     host = PluginHost(extensions=ontology) if ontology else state_of(ctx).host
     settings = Settings(
@@ -87,7 +88,7 @@ def demo(
     Example: afkb demo --out demo-map
     """
     from afkb_mapping.demo_table import demo_results
-    from afkb_mapping.run import Settings
+    from afkb_mapping.run_record import Settings
 
     settings = Settings(uri=DEMO_WORLD, out=out)
     result = _run(state_of(ctx).host, settings)

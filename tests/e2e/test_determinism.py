@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from afkb.plugins.host import PluginHost
-from afkb_mapping.run import Settings, make_map
+from afkb_mapping.run import make_map
+from afkb_mapping.run_record import Settings
 
 OF_THE_RUN = {"run.json", "timings.js"}
 
