@@ -96,7 +96,8 @@ class GridBuilder:
         corner = np.array([part[1].start, part[0].start])
         cells = self._cells(points_xy) - corner
         shifted = points_xy / self._resolution - (self._first_cell + corner)
-        return np.clip(shifted, cells, np.nextafter(cells + 1.0, 0.0))
+        kept: Points = np.clip(shifted, cells, np.nextafter(cells + 1.0, 0.0))
+        return kept
 
     def _apply(self, verdict: NDArray[np.int8], part: tuple[slice, slice]) -> None:
         """One observation per cell: 1 occupied, -1 free, 0 not seen."""
