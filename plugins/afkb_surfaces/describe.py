@@ -17,6 +17,11 @@ BAND_PX = (6.0, 16.0, math.inf, math.inf)
 LEVEL_DEG = (-1.0, 0.0, 5.0, 10.0)
 """A band narrower than BAND_PX is a surface only if it is level: where a thing stands before a
 wall, the sensor draws a ramp from its upper edge to the wall."""
+SMEAR_PX, SMEARED = (4.0, 9.0, math.inf, math.inf), 0.4
+"""The sensor smears an edge over about four pixels: a level band that narrow is doubtful still."""
+LOST_BORDER, STRIP_PX = 0.5, 30.0
+"""A strip in the image that mostly ends where the sensor returns nothing, as glossy and black tops
+do, may reach anywhere; of a broad patch at least the part that was seen is the surface."""
 THICKNESS_M = 0.02
 """Depth given to the box of a surface whose underside isn't seen."""
 
@@ -136,8 +141,12 @@ def support_detection(
     area = len(footprint_xy) * settings.footprint_step_m**2
     tilt_deg, rms = tilt_and_rms(patch.points)
     band_px = image_width(patch)
-    p = membership(area, settings.area_m2) * membership(tilt_deg, settings.normal_to_up_deg)
+    # a floor or a stage supports however large it is
+    p = membership(min(area, settings.area_m2[2]), settings.area_m2) * membership(
+        tilt_deg, settings.normal_to_up_deg
+    )
     p *= max(membership(band_px, BAND_PX), membership(tilt_deg, LEVEL_DEG))
+    p *= max(membership(band_px, SMEAR_PX), SMEARED)
     if p <= 0:
         return None
     box = box_around(footprint_xy, height_m, settings.footprint_step_m)
@@ -155,7 +164,7 @@ def support_detection(
         range_m=float(np.percentile(patch.depth_m, 1)),
         image_box=patch.image_box,
         cut_by_image=patch.cut_by_image,
-        extent_known=missing_border < 0.5,
+        extent_known=missing_border < LOST_BORDER or band_px > STRIP_PX,
         measures={
             "height": height_m,
             "area": area,
