@@ -13,12 +13,22 @@ from afkb.flow import PinholeCamera
 Real = TypeVar("Real", bound=np.floating)
 
 
-def back_project(depth_m: NDArray[np.float32], camera: PinholeCamera) -> NDArray[np.float32]:
-    """Points of a depth image: (H, W, 3) float32, camera optical frame, m; NaN where no return."""
-    z = np.where(depth_m > 0, depth_m, np.nan).astype(np.float32)
-    u = ((np.arange(camera.width) - camera.cx) / camera.fx).astype(np.float32)
-    v = ((np.arange(camera.height) - camera.cy) / camera.fy).astype(np.float32)
-    return np.stack([z * u[None, :], z * v[:, None], z], axis=-1)
+def back_project(
+    depth_m: NDArray[np.float32], camera: PinholeCamera, step: int = 1
+) -> NDArray[np.float32]:
+    """Points of a depth image: (H, W, 3) float32, camera optical frame, m; NaN where no return.
+
+    With `step`, of every step-th pixel of every step-th row.
+    """
+    depth = depth_m[::step, ::step]
+    z = np.where(depth > 0, depth, np.nan).astype(np.float32)
+    u = ((np.arange(0, camera.width, step) - camera.cx) / camera.fx).astype(np.float32)
+    v = ((np.arange(0, camera.height, step) - camera.cy) / camera.fy).astype(np.float32)
+    points = np.empty((*z.shape, 3), dtype=np.float32)
+    np.multiply(z, u[None, :], out=points[..., 0])
+    np.multiply(z, v[:, None], out=points[..., 1])
+    points[..., 2] = z
+    return points
 
 
 def transform(T_a_b: NDArray[np.float64], points_b: NDArray[Real]) -> NDArray[Real]:

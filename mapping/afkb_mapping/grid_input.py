@@ -23,9 +23,9 @@ def insert_view(grid: GridBuilder, view: View) -> None:
         return
     if view.depth_m is None or view.camera is None:
         return
-    near = np.where(view.depth_m < MAX_DEPTH_M, view.depth_m, 0).astype(np.float32)
-    pixels = back_project(near, view.camera)[::PIXEL_STEP, ::PIXEL_STEP].reshape(-1, 3)
-    seen: NDArray[np.float64] = pixels[np.isfinite(pixels[:, 2])].astype(np.float64)
+    pixels = back_project(view.depth_m, view.camera, PIXEL_STEP).reshape(-1, 3)
+    with np.errstate(invalid="ignore"):
+        seen: NDArray[np.float64] = pixels[pixels[:, 2] < MAX_DEPTH_M].astype(np.float64)
     points = transform(view.T_map_camera, seen)
     height = points[:, 2]
     low, high = OBSTACLE_HEIGHTS_M

@@ -94,7 +94,7 @@ def _patches(views: Sequence[View]) -> _Patches:
 def _patches_of(view: View) -> _Patches:
     assert view.depth_m is not None and view.camera is not None and view.T_base_camera is not None
     near = np.where(view.depth_m < MAX_RANGE_M, view.depth_m, 0).astype(np.float32)
-    grid = back_project(near, view.camera)[::PIXEL_STEP, ::PIXEL_STEP].astype(np.float64)
+    grid = back_project(near, view.camera, PIXEL_STEP).astype(np.float64)
     center = grid[1:-1, 1:-1]
     across = grid[1:-1, 2:] - grid[1:-1, :-2]
     down = grid[2:, 1:-1] - grid[:-2, 1:-1]

@@ -69,7 +69,7 @@ class SurfaceDetector:
         labels = join_fragments(
             view.depth_m, cells, labels, kinds, intrinsics, T, s.step_m, s.gap_m
         )
-        pixels = pixel_labels(view.depth_m, cells, labels, s.softness_m)
+        pixels = pixel_labels(view.depth_m, cells, labels, kinds, s.softness_m)
         found = list(self._supports(view.depth_m, labels, kinds, pixels, intrinsics, T))
         return found + list(self._bounds(cells, labels, kinds, camera.fx))
 

@@ -102,36 +102,45 @@ def pixel_labels(
     depth_m: NDArray[np.float32],
     cells: NDArray[np.float64],
     labels: NDArray[np.int32],
+    kinds: NDArray[np.int8],
     softness_m: float,
 ) -> NDArray[np.int32]:
-    """Label of each pixel that lies on the plane of its cell, or of a cell next to it: (H, W)."""
-    height, width = depth_m.shape
+    """Label of each pixel that lies on the plane of its cell, or of a cell next to it: (H, W).
+
+    Pixels with no floor or support next to them keep 0: of upright planes the cells suffice.
+    """
     rows, cols = labels.shape
-    out = np.zeros((height, width), np.int32)
-    for v in range(height):
-        r = min(v // CELL, rows - 1)
-        for u in range(width):
-            z = depth_m[v, u]
-            if z <= 0:
+    out = np.zeros(depth_m.shape, np.int32)
+    for r in range(rows):
+        for c in range(cols):
+            top, bottom = max(r - 1, 0), min(r + 2, rows)
+            left, right = max(c - 1, 0), min(c + 2, cols)
+            level = False
+            for i in range(top, bottom):
+                for j in range(left, right):
+                    level |= labels[i, j] > 0 and kinds[i, j] != UPRIGHT
+            if not level:
                 continue
-            c = min(u // CELL, cols - 1)
-            tolerance = 2.5 * depth_sigma(z) + softness_m
-            w = 1.0 / z
             here = labels[r, c]
-            if here > 0:
-                p = cells[r, c]
-                if abs(p[A] * u + p[B] * v + p[C] - w) * z * z < tolerance:
-                    out[v, u] = here
-                    continue
-            best = tolerance
-            for i in range(max(r - 1, 0), min(r + 2, rows)):
-                for j in range(max(c - 1, 0), min(c + 2, cols)):
-                    if labels[i, j] > 0:
-                        p = cells[i, j]
-                        off = abs(p[A] * u + p[B] * v + p[C] - w) * z * z
-                        if off < best:
-                            best = off
-                            out[v, u] = labels[i, j]
+            for v in range(r * CELL, (r + 1) * CELL):
+                for u in range(c * CELL, (c + 1) * CELL):
+                    z = depth_m[v, u]
+                    if not z > 0:
+                        continue
+                    w, best = 1.0 / z, 2.5 * depth_sigma(z) + softness_m
+                    if here > 0:
+                        p = cells[r, c]
+                        if abs(p[A] * u + p[B] * v + p[C] - w) * z * z < best:
+                            out[v, u] = here
+                            continue
+                    for i in range(top, bottom):
+                        for j in range(left, right):
+                            if labels[i, j] > 0:
+                                p = cells[i, j]
+                                off = abs(p[A] * u + p[B] * v + p[C] - w) * z * z
+                                if off < best:
+                                    best = off
+                                    out[v, u] = labels[i, j]
     return out
 
 
