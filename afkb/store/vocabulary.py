@@ -55,5 +55,8 @@ def escaped(name: str) -> str:
 
     >>> escaped("my detector/2")
     'my%20detector%2F2'
+
+    So is a dot at the end, which not every Turtle parser bears.
     """
-    return quote(name, safe="")
+    encoded = quote(name, safe="")
+    return f"{encoded[:-1]}%2E" if encoded.endswith(".") else encoded

@@ -1,8 +1,8 @@
 """Whatever the documents tell people to type works.
 
-- `bash`: run, in a folder that holds `demo-map` (made by `afkb demo`; `kitchen` is the same),
-  `examples`, and, where the recordings are there, `my-recording` (some frames of one) and the
-  folder that AFKB_DATA names.
+- `bash`: run, all blocks of a document one after the other, in a folder that holds `demo-map`
+  (made by `afkb demo`; `kitchen` is the same), `examples`, and, where the recordings are there,
+  `my-recording` (some frames of one) and the folder that AFKB_DATA names.
 - `sh`: setting up a machine, or an evaluation of minutes; not run, but what it names must exist.
 - `python`: run, all blocks of a document one after the other.
 - `sparql`: asked of the demo's map.
@@ -78,14 +78,16 @@ def _run(command: list[str], desk: Path, environment: dict[str, str], where: str
     assert done.returncode == 0, f"{where}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
 
 
-@pytest.mark.parametrize("block", blocks("bash"), ids=lambda b: b.id)
+@pytest.mark.parametrize("document", sorted({b.document for b in blocks("bash")}))
 def test_commands_run(
-    block: Block, desks: dict[str, Path], environment: dict[str, str], recordings: Path | None
+    document: str, desks: dict[str, Path], environment: dict[str, str], recordings: Path | None
 ) -> None:
-    if needs_recordings(block.text) and recordings is None:
+    commands = [b for b in blocks("bash") if b.document == document]
+    if recordings is None and any(needs_recordings(b.text) for b in commands):
         pytest.skip("needs recordings; set AFKB_DATA to a folder that holds redkitchen")
-    command = ["bash", "-euo", "pipefail", "-c", block.text]
-    _run(command, desks[block.document], environment, block.id)
+    for block in commands:
+        script = ["bash", "-euo", "pipefail", "-c", block.text]
+        _run(script, desks[document], environment, block.id)
 
 
 @pytest.mark.parametrize("document", sorted({b.document for b in blocks("python")}))
