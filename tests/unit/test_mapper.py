@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from mapping_samples import DUAL, container, support, support_below, support_near, view
 
 from afkb.flow import EdgeKind, NodeKind
 from afkb.inference import network_of
 from afkb.knowledge import KnowledgeBase
 from afkb_mapping.mapper import AffordanceMapper
+from mapping_samples import DUAL, container, support, support_below, support_near, view
 
 
 @pytest.fixture(scope="module")
