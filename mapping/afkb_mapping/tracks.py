@@ -122,7 +122,7 @@ class ObservedTrack:
         self.bottom.add(detection.measures.get("support_height", detection.box.bottom), variance)
         strength = max(detection.affordances.values())
         if self.viewpoints.is_new(camera_xy, detection.position_xyz[:2]):
-            self.existence = log_odds(self.existence, min(strength, CERTAIN))
+            self._believe(min(strength, CERTAIN))
         for name, p in detection.affordances.items():
             weight, total = self.affordance_sums.get(name, (0.0, 0.0))
             n = float(detection.n_pixels)
@@ -135,6 +135,11 @@ class ObservedTrack:
         self.pixels_of_known_extent += detection.n_pixels * detection.extent_known
         if len(self.evidence) < KEPT_EVIDENCE:
             self.evidence.append(_evidence(detection, view_index))
+
+    def _believe(self, strength: float) -> None:
+        """Existence after a sighting: a faint one of what is known already says nothing against."""
+        first = len(self.viewpoints.seen_from) == 1
+        self.existence = strength if first else log_odds(self.existence, max(strength, 0.5))
 
     def absorb(self, other: ObservedTrack) -> None:
         """Take over another track that turned out to be the same thing."""
