@@ -12,6 +12,9 @@ from afkb_mapping.footprint import Outline
 from afkb_mapping.tracks import ObservedTrack, PredictedTrack
 
 EXISTS_FROM = 0.5
+CONVINCING = 0.4
+"""A thing whose views, all in all, doubt more than this that it affords anything is none: a false
+cue that a few of them took for something."""
 SUSTAINED = 0.8
 """A thing seen in one view only is kept if that view was this sure of it."""
 SMALLEST_SURFACE_M2 = 0.02
@@ -38,6 +41,8 @@ def observed_entities(tracks: Sequence[ObservedTrack], network: Network) -> list
 
 def _is_kept(track: ObservedTrack) -> bool:
     if track.existence < EXISTS_FROM or not track.footprint:
+        return False
+    if max(track.affordances.values()) < CONVINCING:
         return False
     return track.observations > 1 or track.existence >= SUSTAINED
 

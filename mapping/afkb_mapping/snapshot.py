@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -88,8 +88,18 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
         T_map_source=T_map_source,
         trajectory=np.array([[stamp, *T.ravel()] for stamp, T in content.trajectory]),
         closures=tuple(c for c in content.closures if c.entity in known),
+        notes=tuple(_notes(observed)),
         counts=dict(content.counts),
     )
+
+
+def _notes(observed: Sequence[Entity]) -> Iterator[str]:
+    vague = [e.id for e in observed if not e.extent_known]
+    if vague:
+        yield (
+            f"{', '.join(vague)}: extent not known, the sensor returns too little there "
+            "(glossy, black or transparent tops)"
+        )
 
 
 def _robot_place(place: Place, lookup: RoomLookup) -> RobotPlace:

@@ -19,9 +19,9 @@ LEVEL_DEG = (-1.0, 0.0, 5.0, 10.0)
 wall, the sensor draws a ramp from its upper edge to the wall."""
 SMEAR_PX, SMEARED = (4.0, 9.0, math.inf, math.inf), 0.4
 """The sensor smears an edge over about four pixels: a level band that narrow is doubtful still."""
-LOST_BORDER, STRIP_PX = 0.5, 30.0
-"""A strip in the image that mostly ends where the sensor returns nothing, as glossy and black tops
-do, may reach anywhere; of a broad patch at least the part that was seen is the surface."""
+LOST_BORDER, STRIP_PX = 0.3, 30.0
+"""A strip in the image that for this part of its border ends where the sensor returns nothing, as
+glossy and black tops do, may reach anywhere; of a broad patch at least what was seen is known."""
 THICKNESS_M = 0.02
 """Depth given to the box of a surface whose underside isn't seen."""
 
