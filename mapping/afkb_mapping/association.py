@@ -183,13 +183,12 @@ def _distance(track: ObservedTrack, detection: Detection) -> float:
     center = np.asarray(box.center_xyz[:2])
     outline = _center_of(track.footprint)
     apart = float(np.hypot(*(center - outline)))
-    extent = max(box.size_xyz[:2])
-    gate = THING_REACH_M + 0.25 * extent + 2 * float(np.sqrt(detection.covariance_xyz[0, 0]))
-    if apart > max(gate, 0.5 * extent) or not _overlap_in_height(track, box.bottom, box.top):
+    # Two solid things can't come nearer to each other than their width.
+    width = sum(box.size_xyz[:2]) / 2
+    gate = max(THING_REACH_M, width) + 2 * float(np.sqrt(detection.covariance_xyz[0, 0]))
+    if apart > gate or not _overlap_in_height(track, box.bottom, box.top):
         return FAR_M
     shared = track.footprint.share_within(detection.footprint_xy, THING_CELL_M)
-    if apart > THING_REACH_M and shared < 0.3:
-        return FAR_M
     return apart * (1.5 - shared)
 
 

@@ -25,6 +25,9 @@ from afkb_mapping.visibility import Look, Sight
 EMPTY_LIKELIHOOD_RATIO = 0.03
 """P(seen through | still there) over P(seen through | gone): most of a thing's surface, in clear
 view, is seen through by mistake only where the pose is off or the thing is see-through."""
+OVERLOOKED_LIKELIHOOD_RATIO = 0.55
+"""P(not detected | there) over P(not detected | a false cue): detectors find about half of the
+things they have in clear view, and repeat few of their errors from elsewhere."""
 LOOKED_AT_SHARE = 0.7
 GONE_BELOW = 0.2
 
@@ -159,8 +162,11 @@ class AffordanceMapper:
             if track.id in seen or track.is_floor:
                 continue
             body = _body(track, sight)
-            if _is_empty(sight.look(body)) and track.empty_from.is_new(eye, body[0, :2]):
+            found = sight.look(body)
+            if _is_empty(found) and track.empty_from.is_new(eye, body[0, :2]):
                 track.existence = against(track.existence, EMPTY_LIKELIHOOD_RATIO)
+            elif _is_overlooked(track, found, eye) and track.missed_from.is_new(eye, body[0, :2]):
+                track.existence = against(track.existence, OVERLOOKED_LIKELIHOOD_RATIO)
         for prediction in list(self._predictions):
             empty = _is_empty(sight.look(prediction.sample_points()))
             if empty and prediction.empty_from.is_new(eye, prediction.center_xy):
@@ -178,7 +184,7 @@ class AffordanceMapper:
     ) -> None:
         """Grow G_t: the place of this view, and what is linked to it."""
         in_view = {t.id: None for t in observed if t is not None and not t.is_floor}
-        place = self._places.visit(view, in_view)
+        place = self._places.visit(view, in_view, self._grid.in_sight)
         for track in observed:
             if track is not None:
                 track.places[place.id] = None
@@ -198,6 +204,14 @@ def _eye(view: View) -> NDArray[np.float64]:
 
 def _is_empty(found: Look) -> bool:
     return found.in_view >= LOOKED_AT_SHARE and found.empty >= LOOKED_AT_SHARE
+
+
+def _is_overlooked(track: ObservedTrack, found: Look, eye: NDArray[np.float64]) -> bool:
+    """Whether a thing is in clear view, as near as it was ever seen from, and not detected."""
+    if track.is_surface or found.in_view < 1.0 or found.hit < LOOKED_AT_SHARE:
+        return False
+    nearest = np.linalg.norm(track.footprint.points() - eye, axis=1).min()
+    return bool(nearest <= track.farthest_m)
 
 
 def _body(track: ObservedTrack, sight: Sight) -> NDArray[np.float64]:

@@ -146,6 +146,13 @@ class GridBuilder:
         """(N,) for points (N, 2): whether their cells are more likely occupied than free."""
         return self._at(points_xy, self._log_odds > 0)
 
+    def in_sight(self, start_xy: tuple[float, float], end_xy: Points) -> bool:
+        """Whether nothing that was seen stands on the straight line between two points (m)."""
+        start = np.asarray(start_xy, dtype=np.float64)
+        steps = max(2, math.ceil(float(np.linalg.norm(end_xy - start)) / self._resolution))
+        line = start + np.linspace(0, 1, steps)[:, None] * (end_xy - start)
+        return not self.occupied(line).any()
+
     def _at(self, points_xy: Points, cells_where: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """(N,) value of a mask at points, False outside it."""
         cells = self._cells(points_xy)

@@ -6,11 +6,12 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from afkb.flow import View
 from afkb_mapping.geometry import yaw_of
 
-PLACE_SPACING_M = 1.0
+PLACE_SPACING_M = 1.5
 """A robot that turns on the spot, or moves less than this, stays at its place."""
 FAMILIAR_SHARE = 0.5
 """A view belongs to a place from which at least this share of its entities was already seen."""
@@ -18,6 +19,9 @@ FAR_PLACE_M = 5.0
 """Where nothing affords anything, in a corridor or with a laser alone, a new place begins here."""
 SAME_PLACE_M = 2.5
 """Beyond this distance a view belongs to no earlier place, however much of it is familiar."""
+
+
+InSight = Callable[[tuple[float, float], NDArray[np.float64]], bool]
 
 
 @dataclass(slots=True, eq=False)
@@ -42,36 +46,35 @@ class Places:
         self.current: Place | None = None
         self._new_id = new_id
 
-    def visit(self, view: View, entities: Collection[str]) -> Place:
-        """The place of a view in which these entities are: an earlier one, or a new one."""
+    def visit(self, view: View, entities: Collection[str], in_sight: InSight) -> Place:
+        """The place of a view in which these entities are: an earlier one, or a new one.
+
+        `in_sight` tells whether nothing stands between two points (m): a place holds only what can
+        be reached from it straight on.
+        """
         assert view.T_map_base is not None
         xy = view.T_map_base[:2, 3]
-        place = self._belongs_to(xy, set(entities))
-        if place is None:
-            place = self._new_place(view)
+        place = self._belongs_to(xy, set(entities), in_sight) or self._new_place(view)
         if self.current is not None and self.current is not place:
             self.ways[(self.current.id, place.id)] = None
         self.current = place
         place.seen.update(dict.fromkeys(entities))
         return place
 
-    def _belongs_to(self, xy: np.ndarray, entities: set[str]) -> Place | None:
-        if self.current is None:
-            return None
-        near = sorted(self.places, key=lambda p: float(np.hypot(p.x - xy[0], p.y - xy[1])))
-        nearest = near[0]
-        apart = np.hypot(nearest.x - xy[0], nearest.y - xy[1])
-        if apart < PLACE_SPACING_M:
-            return nearest
-        if not entities:
-            return self.current if apart < FAR_PLACE_M else None
-        for place in near:
-            if np.hypot(place.x - xy[0], place.y - xy[1]) > SAME_PLACE_M:
-                break
-            if len(entities & place.seen.keys()) >= FAMILIAR_SHARE * len(entities):
+    def _belongs_to(
+        self, xy: NDArray[np.float64], entities: set[str], in_sight: InSight
+    ) -> Place | None:
+        near = sorted((float(np.hypot(p.x - xy[0], p.y - xy[1])), p.id, p) for p in self.places)
+        if near and near[0][0] < PLACE_SPACING_M:
+            return near[0][2]
+        for distance, _, place in near:
+            if distance > FAR_PLACE_M or not in_sight((place.x, place.y), xy):
+                continue
+            if not entities and place is self.current:
                 return place
-        if len(entities & self.current.seen.keys()) >= FAMILIAR_SHARE * len(entities):
-            return self.current
+            familiar = len(entities & place.seen.keys()) >= FAMILIAR_SHARE * len(entities)
+            if entities and familiar and distance < SAME_PLACE_M:
+                return place
         return None
 
     def _new_place(self, view: View) -> Place:

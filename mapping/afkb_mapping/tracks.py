@@ -83,6 +83,8 @@ class ObservedTrack:
     affordance_sums: dict[str, tuple[float, float]] = field(default_factory=dict)
     viewpoints: Viewpoints = field(default_factory=Viewpoints)
     empty_from: Viewpoints = field(default_factory=Viewpoints)
+    missed_from: Viewpoints = field(default_factory=Viewpoints)
+    farthest_m: float = 0.0
     observations: int = 0
     pixels: int = 0
     pixels_of_known_extent: int = 0
@@ -129,6 +131,7 @@ class ObservedTrack:
             self.affordance_sums[name] = (weight + n, total + n * p)
         self.observations += view_index != self.last_view
         self.pixels += detection.n_pixels
+        self.farthest_m = max(self.farthest_m, detection.range_m)
         self.first_seen, self.last_seen = min(self.first_seen, stamp), max(self.last_seen, stamp)
         self.last_view = view_index
         self.detectors[detection.detector] = None
@@ -151,6 +154,7 @@ class ObservedTrack:
             mine = self.affordance_sums.get(name, (0.0, 0.0))
             self.affordance_sums[name] = (mine[0] + w, mine[1] + total)
         self.viewpoints.seen_from += other.viewpoints.seen_from
+        self.farthest_m = max(self.farthest_m, other.farthest_m)
         self.observations += other.observations
         self.pixels += other.pixels
         self.first_seen = min(self.first_seen, other.first_seen)
