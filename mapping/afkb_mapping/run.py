@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from afkb.errors import PluginError, SourceError
+from afkb.errors import BadFrame, PluginError, SourceError
 from afkb.flow import Detection, Hypothesis, SkippedFrame, TopologicalMap, View
 from afkb.plugins.host import PluginHost
 from afkb.plugins.protocols import Detector, Mapper, Predictor
@@ -107,9 +107,15 @@ class _Crew:
         )
 
     def take_in(self, view: View) -> None:
-        """One placed view, from what is detected in it to the map."""
-        detections = self._detect(view)
-        hypotheses = self._predict(detections)
+        """One placed view, from what is detected in it to the map.
+
+        Raises `BadFrame` where a detector or predictor fails on it, before the map has changed.
+        """
+        try:
+            detections = self._detect(view)
+            hypotheses = self._predict(detections)
+        except PluginError as error:
+            raise BadFrame(str(error)) from error
         with self.stages.timed("map"), _blamed("mapper", type(self.mapper).__name__):
             self.mapper.add(view, detections, hypotheses)
 
@@ -170,20 +176,24 @@ class _Way:
     def _take_in(self, frame: View) -> None:
         with self.stages.timed("register"):
             view = replace(frame, T_map_base=self.registration.place(frame).T_map_base)
-        self.crew.take_in(view)
+        try:
+            self.crew.take_in(view)
+        except BadFrame as error:
+            self.skipped.append(SkippedFrame(view.index, f"view {view.index}", str(error)))
+            return
         self.used += 1
         self.with_depth += view.depth_m is not None
 
 
 @contextmanager
 def _blamed(what: str, name: str) -> Iterator[None]:
-    """Say whose fault it is when a plugin breaks its contract."""
+    """Say whose fault it is when a plugin fails, whatever it fails with."""
     try:
         yield
-    except (ValueError, TypeError, AttributeError, LookupError, ArithmeticError) as error:
+    except Exception as error:
         raise PluginError(
-            f"{what} {name!r} failed: {error}; run with --debug to see where, "
-            "or leave it out by naming the others"
+            f"{what} {name!r} failed with {type(error).__name__}: {error}; "
+            "mend it, or leave it out by naming the others"
         ) from error
 
 
