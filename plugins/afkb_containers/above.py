@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from afkb.flow import Detection
-from afkb_surfaces.noise import depth_sigma
+from afkb_mapping.sensor_noise import depth_sigma
 
 RASTER_M = 0.02
 HULL_MARGIN_CELLS = 1

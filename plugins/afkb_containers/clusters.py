@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from afkb_containers.stand import Stand
-from afkb_surfaces.noise import depth_sigma
+from afkb_mapping.sensor_noise import depth_sigma
 
 MAX_GRID_CELLS = 4_000_000
 

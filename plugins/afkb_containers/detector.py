@@ -18,7 +18,7 @@ from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import sides_from_above, solid_of
 from afkb_containers.stand import Stand
 from afkb_containers.sunk import sunk_containers
-from afkb_surfaces.settings import membership
+from afkb_mapping.trapezoids import membership
 
 ATTACHED = (0.08, 0.22)
 """Share of a thing's outline beyond which its surface goes on: below the first it stands free,

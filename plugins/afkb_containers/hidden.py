@@ -13,7 +13,7 @@ from afkb_containers.above import FLOOR_M
 from afkb_containers.clusters import Cluster
 from afkb_containers.scene import Scene
 from afkb_containers.stand import Stand
-from afkb_surfaces.noise import depth_sigma
+from afkb_mapping.sensor_noise import depth_sigma
 
 NEAREST_FLOOR_M = 0.25
 HIGHEST_M = 1.8

@@ -12,8 +12,8 @@ from afkb_containers.concavity import Opening
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import Solid
 from afkb_containers.stand import Stand
-from afkb_surfaces.describe import box_around, on_grid
-from afkb_surfaces.settings import membership
+from afkb_mapping.from_above import box_around, on_grid
+from afkb_mapping.trapezoids import membership
 
 LEAST_CLAIM = 0.1
 CUT = 0.5

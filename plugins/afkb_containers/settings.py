@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from afkb_containers.stand import Stand
-from afkb_surfaces.settings import Limits, parameters
+from afkb_mapping.trapezoids import Limits, parameters
 
 if TYPE_CHECKING:
     from afkb.knowledge import KnowledgeBase
@@ -26,8 +26,6 @@ class ContainerSettings:
     - `bin_size_m`: `size_m` of what stands on the floor; `bin_depth_m`: depth of its opening.
     - `basin_width_m`: shorter side of what is let into a support.
     - `core_m`: what rises less over its support, a magazine or a cloth, joins nothing.
-    - `hidden_size_m`: `size_m` of a closed body whose support isn't seen.
-    - `bin_size_m`: `size_m` of what stands on the floor; `bin_depth_m`: least depth of its opening.
     - `above_m`: lowest and highest point of a thing over its support that is looked at.
     """
 

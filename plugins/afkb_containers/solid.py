@@ -9,7 +9,7 @@ import numpy as np
 
 from afkb_containers.clusters import Cluster
 from afkb_containers.settings import ContainerSettings
-from afkb_surfaces.settings import membership
+from afkb_mapping.trapezoids import membership
 
 SOLIDITY = (0.75, 0.90)
 """Share of its image's convex hull that a body must fill: not at all below, fully above."""

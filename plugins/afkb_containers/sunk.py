@@ -14,9 +14,9 @@ from afkb.flow import Detection
 from afkb_containers.judge import LEAST_CLAIM
 from afkb_containers.scene import Scene
 from afkb_containers.settings import ContainerSettings
-from afkb_surfaces.describe import box_around
-from afkb_surfaces.noise import depth_sigma
-from afkb_surfaces.settings import membership
+from afkb_mapping.from_above import box_around
+from afkb_mapping.sensor_noise import depth_sigma
+from afkb_mapping.trapezoids import membership
 
 CELL_M = 0.02
 LEAST_DEPTH_M = 0.05

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from afkb_mapping.kernels import kernel
 
 STRIDE_PX = 3
 REACH_PX = 6
 """How far beyond its border a surface is looked for missing depth; wider than speckle."""
 
 
-@njit(cache=True)
+@kernel
 def missing_border_fractions(
     depth_m: NDArray[np.float32], labels: NDArray[np.int32], n_labels: int
 ) -> NDArray[np.float64]:

@@ -7,10 +7,10 @@ plane is an unweighted least-squares fit of 1/z to pixel coordinates.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from afkb_surfaces.noise import depth_sigma
+from afkb_mapping.kernels import kernel
+from afkb_mapping.sensor_noise import depth_sigma
 
 CELL = 4
 """Pixels along a cell; its plane is fitted to a window of three by three cells if it can."""
@@ -20,7 +20,7 @@ A, B, C, NX, NY, NZ, X, Y, Z, DEPTH, SIGMA_TILT, COUNT = range(12)
 N_COLUMNS = 12
 
 
-@njit(cache=True)
+@kernel
 def cell_sums(depth_m: NDArray[np.float32]) -> NDArray[np.float64]:
     """Moments of each cell: (rows, cols, 10) of n, u, v, w, uu, uv, vv, uw, vw, ww; w = 1/z."""
     rows, cols = depth_m.shape[0] // CELL, depth_m.shape[1] // CELL
@@ -51,7 +51,7 @@ def cell_sums(depth_m: NDArray[np.float32]) -> NDArray[np.float64]:
     return sums
 
 
-@njit(cache=True)
+@kernel
 def _fit(s: NDArray[np.float64], plane: NDArray[np.float64]) -> bool:
     """Least squares of w on (u, v) from moments; plane = a, b, c, mean w, rms, variance of v."""
     n = s[0]
@@ -70,7 +70,7 @@ def _fit(s: NDArray[np.float64], plane: NDArray[np.float64]) -> bool:
     return True
 
 
-@njit(cache=True)
+@kernel
 def cell_planes(
     sums: NDArray[np.float64],
     intrinsics: NDArray[np.float64],
@@ -122,7 +122,7 @@ def cell_planes(
     return cells
 
 
-@njit(cache=True)
+@kernel
 def _write(
     cell: NDArray[np.float64],
     plane: NDArray[np.float64],

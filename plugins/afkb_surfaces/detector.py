@@ -10,15 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
+from afkb_mapping.from_above import on_grid
+from afkb_mapping.image_regions import Region, pixels_by_label
+from afkb_mapping.order_statistics import percentile
 from afkb_surfaces.borders import missing_border_fractions
 from afkb_surfaces.cells import cell_planes, cell_sums
-from afkb_surfaces.describe import (
-    Patch,
-    filled_footprint,
-    mode_height,
-    on_grid,
-    support_detection,
-)
+from afkb_surfaces.describe import support_detection
+from afkb_surfaces.extents import filled_footprint, mode_height
 from afkb_surfaces.fragments import join_fragments
 from afkb_surfaces.grouping import (
     SUPPORT,
@@ -26,7 +24,6 @@ from afkb_surfaces.grouping import (
     classify,
     grow,
     label_spans,
-    members,
     pixel_labels,
     points_of,
 )
@@ -86,13 +83,12 @@ class SurfaceDetector:
         wanted, thin = np.zeros(n, bool), np.ones(n, np.int64)
         wanted[labels[kinds == SUPPORT]] = True
         wanted[FLOOR_LABEL], thin[FLOOR_LABEL] = True, FLOOR_THIN
-        flat, starts = members(pixels, wanted, thin)
-        points = points_of(flat, depth_m, intrinsics, T)
+        u, v, starts = pixels_by_label(pixels, wanted, thin)
+        depths, points = points_of(u, v, depth_m, intrinsics, T)
         missing = missing_border_fractions(depth_m, pixels, n)
         for label in np.flatnonzero(np.diff(starts) >= MIN_PIXELS):
             part = slice(int(starts[label]), int(starts[label + 1]))
-            v, u = np.divmod(flat[part], depth_m.shape[1])
-            patch = Patch(u, v, depth_m[v, u], points[part], depth_m.shape)
+            patch = Region(u[part], v[part], depths[part], points[part], depth_m.shape)
             if label == FLOOR_LABEL:
                 yield from self._floor(patch)
             else:
@@ -102,34 +98,35 @@ class SurfaceDetector:
 
     def _support(
         self,
-        patch: Patch,
+        patch: Region,
         pixels: NDArray[np.int32],
         label: int,
         missing_border: float,
         intrinsics: NDArray[np.float64],
         T: NDArray[np.float64],
     ) -> Iterator[Detection]:
-        height = mode_height(patch.points[:, 2])
+        height = mode_height(patch.points)
         if height > T[2, 3] - BELOW_CAMERA_M:
             return
-        step = self.settings.footprint_step_m
-        footprint = filled_footprint(patch, pixels, label, height, intrinsics, T, step)
+        footprint = filled_footprint(
+            patch.points, pixels, label, height, intrinsics, T, self.settings.footprint_step_m
+        )
         found = support_detection(
             patch, footprint, height, missing_border, self.settings, self.name
         )
         if found is not None:
             yield found
 
-    def _floor(self, patch: Patch) -> Iterator[Detection]:
+    def _floor(self, patch: Region) -> Iterator[Detection]:
         """The floor, once; its height is where it was seen, its top is z = 0."""
-        footprint = on_grid(patch.points[:, :2], FLOOR_STEP_M)
+        footprint = on_grid(patch.points, FLOOR_STEP_M)
         found = support_detection(patch, footprint, 0.0, 0.0, self.settings, self.name)
         if found is not None:
             measures = {
                 **found.measures,
                 "is_floor": 1.0,
                 "area": len(footprint) * FLOOR_STEP_M**2,
-                "height": float(np.median(patch.points[:, 2])),
+                "height": percentile(patch.points[:, 2], 50.0),
             }
             n_pixels = found.n_pixels * FLOOR_THIN**2
             yield replace(found, n_pixels=n_pixels, extent_known=True, measures=measures)
@@ -147,10 +144,9 @@ class SurfaceDetector:
         tall = spans[:, 2] - spans[:, 1] > 0.9 * self.settings.bound_height_m[0]
         wanted = tall & (spans[:, 0] >= MIN_CELLS)
         wanted[0] = False
-        flat, starts = members(upright, wanted, np.ones(n, np.int64))
+        u, v, starts = pixels_by_label(upright, wanted, np.ones(n, np.int64))
         for label in np.flatnonzero(wanted):
-            part = flat[starts[label] : starts[label + 1]]
-            rc = np.column_stack(np.divmod(part, labels.shape[1]))
-            found = upright_detection(rc, cells, focal_px, self.settings, self.name)
+            part = slice(int(starts[label]), int(starts[label + 1]))
+            found = upright_detection(u[part], v[part], cells, focal_px, self.settings, self.name)
             if found is not None:
                 yield found

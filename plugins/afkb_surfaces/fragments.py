@@ -6,19 +6,19 @@ The paper's own example is a kitchen table hidden by what stands on it (Fig. 1b)
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from afkb_mapping.kernels import kernel
+from afkb_mapping.sensor_noise import depth_sigma
 from afkb_surfaces.cells import CELL, DEPTH, X, Z
 from afkb_surfaces.grouping import SUPPORT
-from afkb_surfaces.noise import depth_sigma
 
 SAMPLES = 48
 SEEN_THROUGH = 2
 """Samples on the line between two parts that may show what lies behind the plane."""
 
 
-@njit(cache=True)
+@kernel
 def _seen_through(
     depth_m: NDArray[np.float32],
     start: NDArray[np.float64],
@@ -46,7 +46,7 @@ def _seen_through(
     return count
 
 
-@njit(cache=True)
+@kernel
 def _closest(p: NDArray[np.float64], q: NDArray[np.float64]) -> tuple[float, int, int]:
     """Smallest squared distance between two sets of points (N, 2), and the indexes of that pair."""
     best, bi, bj = np.inf, 0, 0

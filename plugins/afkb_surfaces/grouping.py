@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from afkb_mapping.kernels import kernel
+from afkb_mapping.sensor_noise import depth_sigma
 from afkb_surfaces.cells import CELL, COUNT, DEPTH, NX, NZ, SIGMA_TILT, A, B, C, X, Z
-from afkb_surfaces.noise import depth_sigma
 
 SAME_WALL_COS = 0.92
 """A wall's normal stays this close to where it was first seen, so that corners part walls."""
 NONE, FLOOR, SUPPORT, UPRIGHT = 0, 1, 2, 3
 
 
-@njit(cache=True)
+@kernel
 def classify(
     cells: NDArray[np.float64], tilt_rad: float, upright_rad: float, floor_m: float
 ) -> NDArray[np.int8]:
@@ -36,7 +36,7 @@ def classify(
     return kinds
 
 
-@njit(cache=True)
+@kernel
 def _one_surface(p: NDArray[np.float64], q: NDArray[np.float64], kind: int, step_m: float) -> bool:
     """Whether two neighbouring cells of a kind lie on one surface."""
     tolerance = step_m + depth_sigma(p[DEPTH])
@@ -50,12 +50,12 @@ def _one_surface(p: NDArray[np.float64], q: NDArray[np.float64], kind: int, step
     return min(abs(q[Z] - p[Z]), max(abs(forth), abs(back))) < tolerance
 
 
-@njit(cache=True, inline="always")
+@kernel
 def _dot(p: NDArray[np.float64], q: NDArray[np.float64]) -> float:
     return p[NX] * q[NX] + p[NX + 1] * q[NX + 1] + p[NZ] * q[NZ]
 
 
-@njit(cache=True)
+@kernel
 def grow(
     cells: NDArray[np.float64], kinds: NDArray[np.int8], step_m: float
 ) -> tuple[NDArray[np.int32], int]:
@@ -97,7 +97,7 @@ def grow(
     return labels, count
 
 
-@njit(cache=True)
+@kernel
 def pixel_labels(
     depth_m: NDArray[np.float32],
     cells: NDArray[np.float64],
@@ -144,58 +144,28 @@ def pixel_labels(
     return out
 
 
-@njit(cache=True)
-def members(
-    labels: NDArray[np.int32], wanted: NDArray[np.bool_], thin: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Flat indexes of the wanted labels' pixels, label by label, and where each label begins.
-
-    `thin` (n_labels,): of a label, every such row and column alone is taken. Label k holds
-    `flat[starts[k]:starts[k + 1]]`.
-    """
-    rows, cols = labels.shape
-    n = len(wanted)
-    starts = np.zeros(n + 1, np.int64)
-    for v in range(rows):
-        for u in range(cols):
-            k = labels[v, u]
-            if k > 0 and wanted[k] and v % thin[k] == 0 and u % thin[k] == 0:
-                starts[k + 1] += 1
-    for k in range(n):
-        starts[k + 1] += starts[k]
-    flat = np.empty(starts[n], np.int64)
-    fill = starts[:-1].copy()
-    for v in range(rows):
-        for u in range(cols):
-            k = labels[v, u]
-            if k > 0 and wanted[k] and v % thin[k] == 0 and u % thin[k] == 0:
-                flat[fill[k]] = v * cols + u
-                fill[k] += 1
-    return flat, starts
-
-
-@njit(cache=True)
+@kernel
 def points_of(
-    flat: NDArray[np.int64],
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
     depth_m: NDArray[np.float32],
     intrinsics: NDArray[np.float64],
     T_map_camera: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """Points (N, 3) of pixels given by flat index, map frame."""
+) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+    """Depths (N,) and points (N, 3) of pixels, map frame."""
     fx, fy, cx, cy = intrinsics
     T = T_map_camera
-    cols = depth_m.shape[1]
-    out = np.empty((len(flat), 3))
-    for n in range(len(flat)):
-        v, u = flat[n] // cols, flat[n] % cols
-        z = depth_m[v, u]
-        x, y = (u - cx) / fx * z, (v - cy) / fy * z
+    depths, points = np.empty(len(u), np.float32), np.empty((len(u), 3))
+    for n in range(len(u)):
+        z = depth_m[v[n], u[n]]
+        x, y = (u[n] - cx) / fx * z, (v[n] - cy) / fy * z
+        depths[n] = z
         for k in range(3):
-            out[n, k] = T[k, 0] * x + T[k, 1] * y + T[k, 2] * z + T[k, 3]
-    return out
+            points[n, k] = T[k, 0] * x + T[k, 1] * y + T[k, 2] * z + T[k, 3]
+    return depths, points
 
 
-@njit(cache=True)
+@kernel
 def label_spans(
     cells: NDArray[np.float64], labels: NDArray[np.int32], n_labels: int
 ) -> NDArray[np.float64]:

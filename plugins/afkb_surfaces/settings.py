@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from afkb_mapping.trapezoids import Limits, parameters
+
 if TYPE_CHECKING:
     from afkb.knowledge import KnowledgeBase
-
-Limits = tuple[float, float, float, float]
-"""Trapezoid (z1, n1, n2, z2): impossible outside z1..z2, fully so between n1 and n2."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,25 +44,3 @@ class SurfaceSettings:
             area_m2=support.get("area_m2", base.area_m2),
             bound_height_m=block.get("height_m", base.bound_height_m),
         )
-
-
-def parameters(knowledge_base: KnowledgeBase, feature: str) -> Mapping[str, Limits]:
-    """Trapezoids that a feature states in the ontology, by name; empty for an unknown feature."""
-    found = knowledge_base.features.get(feature)
-    if found is None:
-        return {}
-    return {name: (t.z1, t.n1, t.n2, t.z2) for name, t in found.parameters.items()}
-
-
-def membership(value: float, limits: Limits) -> float:
-    """Degree, 0 to 1, to which a value lies within a trapezoid.
-
-    >>> membership(0.75, (0.5, 1.0, 2.0, 3.0))
-    0.5
-    """
-    z1, n1, n2, z2 = limits
-    if value <= z1 or value >= z2:
-        return 1.0 if n1 <= value <= n2 else 0.0
-    if value < n1:
-        return (value - z1) / (n1 - z1)
-    return 1.0 if value <= n2 else (z2 - value) / (z2 - n2)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from numba import njit
+from afkb_mapping.kernels import kernel
 
 FLOOR_M = 0.0012
 GROWTH_PER_M = 0.0019
 NEAREST_M = 0.4
 
 
-@njit(cache=True, inline="always")
+@kernel
 def depth_sigma(z_m: float) -> float:
     """Standard deviation of a depth of z_m, m (axial noise of Nguyen et al., 3DIMPVT 2012).
 

@@ -1,0 +1,114 @@
+"""Points seen from above: the grid squares that they fill, and the smallest box around them."""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import OrientedBox
+from afkb_mapping.kernels import kernel
+
+THICKNESS_M = 0.02
+"""Depth given to the box of a surface whose underside isn't seen."""
+
+
+@kernel
+def on_grid(xy: NDArray[np.float64], step_m: float) -> NDArray[np.float64]:
+    """Centres of the grid squares that hold points (N, 2+): (M, 2), sorted, step_m apart."""
+    low, span, ij = squares_of(xy, step_m)
+    hit = np.zeros((span[0], span[1]), np.bool_)
+    count = 0
+    for n in range(len(ij)):
+        i, j = ij[n, 0] - low[0], ij[n, 1] - low[1]
+        if not hit[i, j]:
+            hit[i, j] = True
+            count += 1
+    out = np.empty((count, 2))
+    n = 0
+    for i in range(span[0]):
+        for j in range(span[1]):
+            if hit[i, j]:
+                out[n, 0], out[n, 1] = (low[0] + i + 0.5) * step_m, (low[1] + j + 0.5) * step_m
+                n += 1
+    return out
+
+
+@kernel
+def squares_of(
+    xy: NDArray[np.float64], step_m: float
+) -> tuple[tuple[int, int], tuple[int, int], NDArray[np.int64]]:
+    """Lowest grid square of points (N, 2+), N > 0; how many squares they span; each one's."""
+    ij = np.empty((len(xy), 2), np.int64)
+    for n in range(len(xy)):
+        for k in range(2):
+            ij[n, k] = math.floor(xy[n, k] / step_m)
+    i0 = i1 = ij[0, 0]
+    j0 = j1 = ij[0, 1]
+    for n in range(1, len(ij)):
+        i0, i1 = min(i0, ij[n, 0]), max(i1, ij[n, 0])
+        j0, j1 = min(j0, ij[n, 1]), max(j1, ij[n, 1])
+    return (i0, j0), (i1 - i0 + 1, j1 - j0 + 1), ij
+
+
+@kernel
+def hull_candidates(xy: NDArray[np.floating]) -> NDArray[np.float32]:
+    """Those of the points (N, 2+) that may be corners of their convex hull: (M, 2), M <= N.
+
+    Whatever lies within the octagon of the points that reach farthest in eight directions can't
+    be one (Akl and Toussaint, 1978); that leaves few to sort.
+    """
+    n = len(xy)
+    corner = np.zeros(8, np.int64)
+    farthest = np.full(8, -np.inf)
+    p = np.empty((n, 2), np.float32)
+    for i in range(n):
+        p[i, 0], p[i, 1] = xy[i, 0], xy[i, 1]
+        x, y = float(p[i, 0]), float(p[i, 1])
+        reach = (x, x + y, y, y - x, -x, -x - y, -y, x - y)
+        for k in range(8):
+            if reach[k] > farthest[k]:
+                farthest[k], corner[k] = reach[k], i
+    edges = np.zeros((8, 3))
+    for k in range(8):
+        a, b = p[corner[k]], p[corner[(k + 1) % 8]]
+        edges[k, 0] = float(a[1]) - float(b[1])
+        edges[k, 1] = float(b[0]) - float(a[0])
+        edges[k, 2] = edges[k, 0] * float(a[0]) + edges[k, 1] * float(a[1])
+    kept = 0
+    for i in range(n):
+        x, y = float(p[i, 0]), float(p[i, 1])
+        within = True
+        for k in range(8):
+            if edges[k, 0] == 0 and edges[k, 1] == 0:
+                continue
+            if edges[k, 0] * x + edges[k, 1] * y <= edges[k, 2] + 1e-12:
+                within = False
+                break
+        if not within:
+            p[kept, 0], p[kept, 1] = p[i, 0], p[i, 1]
+            kept += 1
+    return p[: max(kept, min(n, 1))]  # all points may be one
+
+
+def smallest_rectangle(
+    xy: NDArray[np.floating],
+) -> tuple[tuple[float, float], tuple[float, float], float]:
+    """Centre, sides and turn (degrees) of the smallest rectangle around points (N, 2+), N > 0."""
+    (x, y), (length, width), degrees = cv2.minAreaRect(hull_candidates(xy))
+    return (float(x), float(y)), (float(length), float(width)), float(degrees)
+
+
+def box_around(
+    footprint_xy: NDArray[np.float64], top_m: float, step_m: float, height_m: float = THICKNESS_M
+) -> OrientedBox:
+    """Smallest upright box over a footprint of grid squares, its long side along x."""
+    (x, y), (length, width), degrees = smallest_rectangle(footprint_xy)
+    yaw = math.radians(degrees)
+    if width > length:
+        length, width, yaw = width, length, yaw + math.pi / 2
+    yaw = (yaw + math.pi / 2) % math.pi - math.pi / 2
+    size = (length + step_m, width + step_m, height_m)
+    return OrientedBox((x, y, top_m - height_m / 2), size, yaw)

@@ -1,0 +1,76 @@
+"""Pixels of a labelled image, label by label."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb_mapping.kernels import kernel
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Region:
+    """Pixels of one thing or surface in a depth image of `shape`, all arrays (N, …).
+
+    Coordinates `u` (column) and `v` (row), depth in m, and points in the map frame.
+    """
+
+    u: NDArray[np.int32]
+    v: NDArray[np.int32]
+    depth_m: NDArray[np.float32]
+    points: NDArray[np.float64]
+    shape: tuple[int, ...]
+
+    @property
+    def image_box(self) -> tuple[int, int, int, int]:
+        """Half-open (u0, v0, u1, v1)."""
+        return extent(self.u, self.v)
+
+    @property
+    def cut_by_image(self) -> bool:
+        """Whether it reaches the image edge."""
+        u0, v0, u1, v1 = self.image_box
+        return u0 <= 1 or v0 <= 1 or u1 >= self.shape[1] - 1 or v1 >= self.shape[0] - 1
+
+
+@kernel
+def extent(u: NDArray[np.int32], v: NDArray[np.int32]) -> tuple[int, int, int, int]:
+    """Half-open box (u0, v0, u1, v1) around pixels (N,), N > 0."""
+    u0 = u1 = u[0]
+    v0 = v1 = v[0]
+    for k in range(1, len(u)):
+        u0, u1 = min(u0, u[k]), max(u1, u[k])
+        v0, v1 = min(v0, v[k]), max(v1, v[k])
+    return u0, v0, u1 + 1, v1 + 1
+
+
+@kernel
+def pixels_by_label(
+    labels: NDArray[np.signedinteger], wanted: NDArray[np.bool_], thin: NDArray[np.int64]
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
+    """Columns u and rows v of the wanted labels' pixels, label by label, and where each begins.
+
+    `labels` (H, W); of those above 0, label k holds `u[starts[k]:starts[k + 1]]`, in the order
+    of the image. `thin` (n_labels,): of a label, every such row and column alone is taken.
+    """
+    rows, cols = labels.shape
+    n = len(wanted)
+    starts = np.zeros(n + 1, np.int64)
+    for i in range(rows):
+        for j in range(cols):
+            k = labels[i, j]
+            if k > 0 and wanted[k] and (thin[k] == 1 or (i % thin[k] == 0 and j % thin[k] == 0)):
+                starts[k + 1] += 1
+    for k in range(n):
+        starts[k + 1] += starts[k]
+    u, v = np.empty(starts[n], np.int32), np.empty(starts[n], np.int32)
+    fill = starts[:-1].copy()
+    for i in range(rows):
+        for j in range(cols):
+            k = labels[i, j]
+            if k > 0 and wanted[k] and (thin[k] == 1 or (i % thin[k] == 0 and j % thin[k] == 0)):
+                u[fill[k]], v[fill[k]] = j, i
+                fill[k] += 1
+    return u, v, starts

@@ -1,0 +1,63 @@
+"""Percentiles of short arrays, compiled: numpy's take longer to prepare than to compute."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb_mapping.kernels import kernel
+
+
+@kernel
+def _select(scratch: NDArray[np.float64], k: int) -> float:
+    """The k-th smallest value; whatever stands behind it then is no smaller (Hoare's select)."""
+    left, right = 0, len(scratch) - 1
+    while left < right:
+        pivot = scratch[(left + right) // 2]
+        i, j = left, right
+        while i <= j:
+            while scratch[i] < pivot:
+                i += 1
+            while scratch[j] > pivot:
+                j -= 1
+            if i <= j:
+                scratch[i], scratch[j] = scratch[j], scratch[i]
+                i += 1
+                j -= 1
+        if k <= j:
+            right = j
+        elif k >= i:
+            left = i
+        else:
+            break
+    return float(scratch[k])
+
+
+@kernel
+def _percentile_within(scratch: NDArray[np.float64], percent: float) -> float:
+    rank = (len(scratch) - 1) * (percent / 100.0)
+    k = math.floor(rank)
+    share = rank - k
+    low = _select(scratch, k)
+    if share == 0.0:
+        return low
+    high = float(scratch[k + 1])
+    for n in range(k + 2, len(scratch)):
+        high = min(high, float(scratch[n]))
+    # numpy's rounding, so that the result is the same to the last bit
+    return high - (high - low) * (1.0 - share) if share >= 0.5 else low + (high - low) * share
+
+
+@kernel
+def percentile(values: NDArray[np.floating], percent: float) -> float:
+    """What `numpy.percentile` gives for finite values (N,), N > 0."""
+    return _percentile_within(values.astype(np.float64), percent)
+
+
+@kernel
+def percentiles(values: NDArray[np.floating], low: float, high: float) -> tuple[float, float]:
+    """Two percentiles of finite values (N,), N > 0."""
+    scratch = values.astype(np.float64)
+    return _percentile_within(scratch, low), _percentile_within(scratch, high)
