@@ -74,3 +74,27 @@ def pixels_by_label(
                 u[fill[k]], v[fill[k]] = j, i
                 fill[k] += 1
     return u, v, starts
+
+
+@kernel
+def order_by_label(
+    labels: NDArray[np.signedinteger], wanted: NDArray[np.bool_]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Indexes of the entries of `labels` (N,) that are wanted, label by label, and their starts.
+
+    Label k holds `order[starts[k]:starts[k + 1]]`, ascending.
+    """
+    n = len(wanted)
+    starts = np.zeros(n + 1, np.int64)
+    for i in range(len(labels)):
+        if wanted[labels[i]]:
+            starts[labels[i] + 1] += 1
+    for k in range(n):
+        starts[k + 1] += starts[k]
+    order, fill = np.empty(starts[n], np.int64), starts[:-1].copy()
+    for i in range(len(labels)):
+        k = labels[i]
+        if wanted[k]:
+            order[fill[k]] = i
+            fill[k] += 1
+    return order, starts

@@ -4,124 +4,173 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
 import cv2
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from afkb_containers.scene import Scene
+from afkb_containers.settings import ContainerSettings
 from afkb_containers.stand import Stand
+from afkb_mapping.from_above import hull_candidates
+from afkb_mapping.image_regions import Region, order_by_label, pixels_by_label
+from afkb_mapping.kernels import kernel
+from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
 
 MAX_GRID_CELLS = 4_000_000
+Box = tuple[int, int, int, int]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Cluster:
-    """Pixels of one thing: coordinates, depth (m) and points in the map frame, all (N, …).
-
-    `support_height_m` is None where what it stands on isn't seen.
-    """
+class Cluster(Region):
+    """Pixels of one thing, what it stands on, and how high that is (m); None if it isn't seen."""
 
     stand: Stand
-
-    u: NDArray[np.int64]
-    v: NDArray[np.int64]
-    depth_m: NDArray[np.float32]
-    points: NDArray[np.float64]
-    shape: tuple[int, ...]
     support_height_m: float | None
 
     @property
     def lowest_m(self) -> float:
         """Height of the lowest part in sight, strays left out, m."""
-        return float(np.percentile(self.points[:, 2], 2))
+        return percentile(self.points[:, 2], 2.0)
 
     @property
     def sigma_m(self) -> float:
         """Standard deviation of its depth, m."""
-        return float(depth_sigma(float(np.median(self.depth_m))))
-
-    @property
-    def image_box(self) -> tuple[int, int, int, int]:
-        """Half-open (u0, v0, u1, v1)."""
-        return int(self.u.min()), int(self.v.min()), int(self.u.max()) + 1, int(self.v.max()) + 1
-
-    @property
-    def cut_by_image(self) -> bool:
-        """Whether it reaches the image edge."""
-        u0, v0, u1, v1 = self.image_box
-        return u0 <= 1 or v0 <= 1 or u1 >= self.shape[1] - 1 or v1 >= self.shape[0] - 1
+        return depth_sigma(percentile(self.depth_m, 50.0))
 
 
 def clusters_from_above(
-    flat: NDArray[np.int64],
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
+    scene: Scene,
+    support_height_m: float,
+    settings: ContainerSettings,
+) -> Iterator[Cluster]:
+    """Split pixels where, seen from above, nothing tall lies between them.
+
+    A mug's far inner wall is separated from its front by a step in depth, but not from above:
+    its rim joins them. Only what rises by core_m joins, so that a magazine under a mug doesn't
+    make one thing of them; lower points go to the thing within whose hull they lie. Heights are
+    those over the support, so that a tilt of the view doesn't reach them.
+    """
+    least_tall = settings.min_pixels // 2
+    depths, xyz, tall, ij, count, (i0, j0, i1, j1) = _over_support(
+        u, v, scene.depth_m, scene.points, scene.overs_m, support_height_m,
+        settings.core_m, settings.cell_m,
+    )  # fmt: skip
+    if count < least_tall or (i1 - i0 + 5) * (j1 - j0 + 5) > MAX_GRID_CELLS:
+        return
+    ij -= np.array([i0 - 2, j0 - 2])
+    names, enough = _names_from_above(ij, tall, (i1 - i0 + 5, j1 - j0 + 5), least_tall)
+    order, starts = order_by_label(_name_each(ij, names), enough)
+    for k in np.flatnonzero(np.diff(starts) >= settings.min_pixels):
+        m = order[starts[k] : starts[k + 1]]
+        yield Cluster(
+            u[m], v[m], depths[m], xyz[m], scene.depth_m.shape, Stand.ON_SUPPORT, support_height_m
+        )
+
+
+@kernel
+def _over_support(
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
     depth_m: NDArray[np.float32],
     points: NDArray[np.float32],
     overs_m: NDArray[np.float32],
     support_height_m: float,
     core_m: float,
     cell_m: float,
-    min_pixels: int,
-) -> Iterator[Cluster]:
-    """Split pixels (flat indexes) where, seen from above, nothing tall lies between them.
-
-    A mug's far inner wall is separated from its front by a step in depth, but not from above:
-    its rim joins them. Only what rises by core_m joins, so that a magazine under a mug doesn't
-    make one thing of them; lower points go to the thing within whose hull they lie. Heights are
-    those over the support (overs_m), so that a tilt of the view doesn't reach them.
-    """
-    xyz = points.reshape(-1, 3)[flat].astype(np.float64)
-    over = overs_m.ravel()[flat]
-    tall = over > core_m
-    xyz[:, 2] = support_height_m + over
-    if tall.sum() < min_pixels // 2:
-        return
-    ij = np.floor(xyz[:, :2] / cell_m).astype(np.int64)
-    low = ij[tall].min(axis=0) - 2
-    span = ij[tall].max(axis=0) - low + 3
-    if span[0] * span[1] > MAX_GRID_CELLS:
-        return
-    ij -= low
-    names = _names_from_above(ij[tall], (int(span[0]), int(span[1])))
-    on_grid = ((ij >= 0) & (ij < span)).all(axis=1)
-    of = np.zeros(len(flat), np.int32)
-    of[on_grid] = names[ij[on_grid, 0], ij[on_grid, 1]]
-    order = np.argsort(of, kind="stable")
-    starts = np.searchsorted(of[order], np.arange(1, int(names.max()) + 2))
-    for begin, end in pairwise(starts):
-        member = order[begin:end]
-        if len(member) >= min_pixels and tall[member].sum() >= min_pixels // 2:
-            v, u = np.divmod(flat[member], depth_m.shape[1])
-            yield Cluster(
-                Stand.ON_SUPPORT, u, v, depth_m[v, u], xyz[member], depth_m.shape, support_height_m
-            )
+) -> tuple[
+    NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64], int, Box
+]:
+    """Depths and points of pixels, which are tall, their grid squares; number and box of those."""
+    n = len(u)
+    depths, xyz = np.empty(n, np.float32), np.empty((n, 3))
+    tall, ij = np.empty(n, np.bool_), np.empty((n, 2), np.int64)
+    far = np.int64(1 << 60)
+    i0, j0, i1, j1, count = far, far, -far, -far, 0
+    for m in range(n):
+        r, c = v[m], u[m]
+        over = overs_m[r, c]
+        depths[m], tall[m] = depth_m[r, c], over > core_m
+        xyz[m, 0], xyz[m, 1] = points[r, c, 0], points[r, c, 1]
+        xyz[m, 2] = support_height_m + over
+        i, j = np.int64(np.floor(xyz[m, 0] / cell_m)), np.int64(np.floor(xyz[m, 1] / cell_m))
+        ij[m, 0], ij[m, 1] = i, j
+        if tall[m]:
+            i0, j0, i1, j1, count = min(i0, i), min(j0, j), max(i1, i), max(j1, j), count + 1
+    return depths, xyz, tall, ij, count, (i0, j0, i1, j1)
 
 
-def _names_from_above(ij: NDArray[np.int64], shape: tuple[int, int]) -> NDArray[np.int32]:
-    """Connected groups of grid squares, from 1, each filled to its convex hull: (X, Y)."""
+@kernel
+def _grid_of(
+    ij: NDArray[np.int64], tall: NDArray[np.bool_], shape: tuple[int, int]
+) -> NDArray[np.uint8]:
     grid = np.zeros(shape, np.uint8)
-    grid[ij[:, 0], ij[:, 1]] = 1
-    count, parts, stats, _ = cv2.connectedComponentsWithStats(
-        cv2.dilate(grid, np.ones((2, 2), np.uint8)), connectivity=8
-    )
+    for n in range(len(ij)):
+        if tall[n]:
+            grid[ij[n, 0], ij[n, 1]] = 1
+    return grid
+
+
+@kernel
+def _name_each(ij: NDArray[np.int64], names: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Name of the grid square of each point (N,); 0 for one that lies off the grid."""
+    of = np.zeros(len(ij), np.int32)
+    for n in range(len(ij)):
+        i, j = ij[n, 0], ij[n, 1]
+        if 0 <= i < names.shape[0] and 0 <= j < names.shape[1]:
+            of[n] = names[i, j]
+    return of
+
+
+def _names_from_above(
+    ij: NDArray[np.int64], tall: NDArray[np.bool_], shape: tuple[int, int], least_tall: int
+) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+    """Connected groups of grid squares, from 1, each filled to its convex hull: (X, Y).
+
+    And which groups hold enough tall points. A larger group's hull goes before a smaller one's,
+    a group's own squares before any hull.
+    """
+    grid = cv2.dilate(_grid_of(ij, tall, shape), np.ones((2, 2), np.uint8))
+    count, parts, stats, _ = cv2.connectedComponentsWithStats(grid, connectivity=8)
+    enough = np.bincount(_name_each(ij, parts)[tall], minlength=count) >= least_tall
+    enough[0] = False
+    by_area = sorted(range(1, count), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))
+    while by_area and not enough[by_area[-1]]:
+        by_area.pop()
+    wanted = np.zeros(count, np.bool_)
+    wanted[by_area] = True
+    columns, rows, starts = pixels_by_label(parts, wanted, np.ones(count, np.int64))
     names = np.zeros(shape, np.int32)
-    for k in sorted(range(1, count), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA])):
-        x, y, w, h = (int(n) for n in stats[k, :4])
-        own = np.argwhere(parts[y : y + h, x : x + w] == k)
-        filled = np.zeros((h, w), np.uint8)
-        cv2.fillConvexPoly(filled, cv2.convexHull(own[:, ::-1].astype(np.int32)), 1)
-        part = names[y : y + h, x : x + w]
-        part[(filled > 0) & (part == 0)] = k
-        part[own[:, 0], own[:, 1]] = k
-    return names
+    for k in by_area:
+        own = slice(int(starts[k]), int(starts[k + 1]))
+        _fill_hull(names, columns[own], rows[own], k, stats[k])
+    np.copyto(names, parts, where=parts > 0)
+    return names, enough
 
 
-@njit(cache=True)
+def _fill_hull(
+    names: NDArray[np.int32],
+    columns: NDArray[np.int32],
+    rows: NDArray[np.int32],
+    k: int,
+    stats: NDArray[np.int32],
+) -> None:
+    """Give the squares within a group's hull that have no name yet the name k."""
+    x, y, w, h = (int(n) for n in stats[:4])
+    corners = hull_candidates(np.column_stack([columns - x, rows - y])).astype(np.int32)
+    filled = np.zeros((h, w), np.uint8)
+    cv2.fillConvexPoly(filled, cv2.convexHull(corners), 1)
+    part = names[y : y + h, x : x + w]
+    part[(filled > 0) & (part == 0)] = k
+
+
+@kernel
 def surroundings(
-    u: NDArray[np.int64],
-    v: NDArray[np.int64],
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
     depth_m: NDArray[np.float32],
     mine: NDArray[np.int32],
     name: int,

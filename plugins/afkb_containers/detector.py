@@ -18,6 +18,7 @@ from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import sides_from_above, solid_of
 from afkb_containers.stand import Stand
 from afkb_containers.sunk import sunk_containers
+from afkb_mapping.image_regions import pixels_by_label
 from afkb_mapping.trapezoids import membership
 
 ATTACHED = (0.08, 0.22)
@@ -56,24 +57,19 @@ class ContainerDetector:
         return found + list(sunk_containers(scene, s, self.name))
 
     def _on_supports(self, scene: Scene) -> Iterator[Cluster]:
-        s, flat_labels = self.settings, scene.labels.ravel()
-        flat = np.flatnonzero(flat_labels > 0)
-        of = flat_labels[flat]
-        flat = flat[np.argsort(of, kind="stable")]
-        ends = np.cumsum(np.bincount(of, minlength=len(scene.supports.heights_m) + 1)[1:])
-        groups = np.split(flat, ends[:-1]) if len(ends) else []
-        for height, group in zip(scene.supports.heights_m, groups, strict=True):
-            if len(group) >= s.min_pixels:
-                yield from clusters_from_above(
-                    group, scene.depth_m, scene.points, scene.overs_m, float(height),
-                    s.core_m, s.cell_m, s.min_pixels,
-                )  # fmt: skip
+        n = len(scene.supports.heights_m) + 1
+        u, v, starts = pixels_by_label(scene.labels, np.ones(n, np.bool_), np.ones(n, np.int64))
+        for k in np.flatnonzero(np.diff(starts) >= self.settings.min_pixels):
+            part = slice(int(starts[k]), int(starts[k + 1]))
+            height = float(scene.supports.heights_m[k - 1])
+            yield from clusters_from_above(u[part], v[part], scene, height, self.settings)
 
     def _detection(
         self, cluster: Cluster, scene: Scene, mine: NDArray[np.int32], name: int
     ) -> Detection | None:
         s = self.settings
-        size = membership(sides_from_above(cluster)[0], s.sides_m(cluster.stand))
+        length, _ = sides_from_above(cluster.points)
+        size = membership(length, s.sides_m(cluster.stand))
         if size <= 0:
             return None
         mine[cluster.v, cluster.u] = name
@@ -84,7 +80,7 @@ class ContainerDetector:
         if size <= 0:
             return None
         base = cluster.lowest_m if cluster.support_height_m is None else cluster.support_height_m
-        solid = solid_of(cluster, base, s)
+        solid = solid_of(cluster, base, length, s)
         if cluster.stand is not Stand.ON_FLOOR and solid.height_m > s.above_m[1] - 0.02:
             return None
         opening = find_opening(cluster, scene.camera_xyz)

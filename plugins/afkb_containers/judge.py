@@ -13,6 +13,7 @@ from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import Solid
 from afkb_containers.stand import Stand
 from afkb_mapping.from_above import box_around, on_grid
+from afkb_mapping.order_statistics import percentile
 from afkb_mapping.trapezoids import membership
 
 LEAST_CLAIM = 0.1
@@ -72,7 +73,7 @@ def container_detection(
 ) -> Detection:
     """The thing from base_m up to its rim or top, its centre in the middle of that box."""
     rim = opening.rim_height_m if opening else base_m + solid.height_m
-    box = box_around(on_grid(cluster.points[:, :2], 0.005), rim, 0.0, rim - base_m)
+    box = box_around(on_grid(cluster.points, 0.005), rim, 0.0, rim - base_m)
     affordances = {"ContainAbility": verdict.contains}
     if verdict.closed_p >= LEAST_CLAIM:
         affordances["IntrinsicContainAbility"] = verdict.closed_p
@@ -83,9 +84,9 @@ def container_detection(
         box=box,
         position_xyz=np.array(box.center_xyz),
         covariance_xyz=np.diag([spread, spread, 0.25 * spread]),
-        footprint_xy=on_grid(cluster.points[:, :2], 0.02),
+        footprint_xy=on_grid(cluster.points, 0.02),
         n_pixels=len(cluster.u),
-        range_m=float(np.percentile(cluster.depth_m, 1)),
+        range_m=percentile(cluster.depth_m, 1.0),
         image_box=cluster.image_box,
         cut_by_image=cluster.cut_by_image,
         measures=_measures(cluster, base_m, rim, solid, opening),

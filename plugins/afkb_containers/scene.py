@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
-from afkb_containers.above import Supports, fit_supports, label_things, map_points
+from afkb_containers.above import fit_supports, label_things, map_points
 from afkb_containers.settings import ContainerSettings
+from afkb_containers.supports import Supports
+from afkb_mapping.kernels import kernel
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,6 +37,12 @@ class Scene:
         """Where the camera is, map frame."""
         return self.T_map_camera[:3, 3]
 
+    def at(
+        self, u: NDArray[np.int32], v: NDArray[np.int32]
+    ) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+        """Depths (N,) and points (N, 3), map frame, of pixels."""
+        return _taken(u, v, self.depth_m, self.points)
+
     @classmethod
     def of(
         cls, view: View, earlier: Sequence[Detection], settings: ContainerSettings
@@ -53,6 +61,21 @@ class Scene:
             view.depth_m, points, planes, supports.large, *grid, slope, *settings.above_m
         )
         return cls(view.depth_m, intrinsics, T, points, supports, labels, overs)
+
+
+@kernel
+def _taken(
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
+    depth_m: NDArray[np.float32],
+    points: NDArray[np.float32],
+) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+    depths, xyz = np.empty(len(u), np.float32), np.empty((len(u), 3))
+    for n in range(len(u)):
+        depths[n] = depth_m[v[n], u[n]]
+        for k in range(3):
+            xyz[n, k] = points[v[n], u[n], k]
+    return depths, xyz
 
 
 def height_per_depth(

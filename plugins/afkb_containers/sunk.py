@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 import cv2
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from afkb.flow import Detection
@@ -15,6 +14,8 @@ from afkb_containers.judge import LEAST_CLAIM
 from afkb_containers.scene import Scene
 from afkb_containers.settings import ContainerSettings
 from afkb_mapping.from_above import box_around
+from afkb_mapping.kernels import kernel
+from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
 from afkb_mapping.trapezoids import membership
 
@@ -31,7 +32,7 @@ RING = (0.60, 0.85)
 """Share of the way around a hole on which there must be rim: none below, fully sure above."""
 
 
-@njit(cache=True)
+@kernel
 def _holes(
     depth_m: NDArray[np.float32],
     points: NDArray[np.float32],
@@ -103,23 +104,24 @@ def _in_support(
     open_ = cv2.morphologyEx((deepest > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3)))
     count, parts, stats, _ = cv2.connectedComponentsWithStats(open_, connectivity=4)
     for k in range(1, count):
+        if stats[k, cv2.CC_STAT_AREA] * CELL_M**2 < LEAST_AREA_M2:
+            continue
         hole = parts == k
-        deep = float(np.percentile(deepest[hole], 95)) >= LEAST_DEPTH_M
-        if deep and stats[k, cv2.CC_STAT_AREA] * CELL_M**2 >= LEAST_AREA_M2:
-            ring = _ring_share(hole, top)
-            sure = min(1.0, (ring - RING[0]) / (RING[1] - RING[0]))
-            if sure > 0:
-                found = _detection(
-                    hole, deepest, origin, height_m, sure, ring, support, settings, detector
-                )
-                if found.affords("ContainAbility", LEAST_CLAIM):
-                    yield found
+        if percentile(deepest[hole], 95.0) < LEAST_DEPTH_M:
+            continue
+        ring = _ring_share(hole, top)
+        sure = min(1.0, (ring - RING[0]) / (RING[1] - RING[0]))
+        if sure > 0:
+            found = _detection(
+                hole, deepest, origin, height_m, sure, ring, support, settings, detector
+            )
+            if found.affords("ContainAbility", LEAST_CLAIM):
+                yield found
 
 
 def _ring_share(hole: NDArray[np.bool_], top: NDArray[np.uint8]) -> float:
     """Share of a hole's outline next to which, going outwards, its support is seen."""
-    kernel = np.ones((3, 3), np.uint8)
-    outline = cv2.dilate(hole.astype(np.uint8), kernel) - hole.astype(np.uint8)
+    outline = cv2.dilate(hole.astype(np.uint8), np.ones((3, 3))) - hole.astype(np.uint8)
     near = cv2.dilate(top, np.ones((2 * RING_CELLS + 1,) * 2, np.uint8))
     return float((outline & near).sum() / max(int(outline.sum()), 1))
 
@@ -136,7 +138,7 @@ def _detection(
     detector: str,
 ) -> Detection:
     footprint = (np.argwhere(hole) + 0.5) * CELL_M + origin
-    depth = float(np.percentile(deepest[hole & (deepest > 0)], 95))
+    depth = percentile(deepest[hole & (deepest > 0)], 95.0)
     box = box_around(footprint, rim_m, CELL_M, depth)
     length, width = box.size_xyz[:2]
     sure *= membership(width, settings.basin_width_m)

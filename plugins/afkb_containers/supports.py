@@ -1,0 +1,99 @@
+"""Where, seen from above, a view's supports and walls are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import Detection
+
+RASTER_M = 0.02
+HULL_MARGIN_CELLS = 1
+LARGE_SUPPORT_M2 = 0.12
+MAX_SUPPORTS = 62
+WALL_BIT = np.uint64(63)
+WALL_HEIGHT_M, WALL_LENGTH_M = 1.0, 1.0
+WALL_RMS_M = 0.05
+WALL_CELLS = 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Supports:
+    """Supports of a view, highest first, and a raster of which of them lie under a spot.
+
+    `raster`: (X, Y) uint64, bit k for support k; its corner is at `origin_xy`.
+    """
+
+    detections: tuple[Detection, ...]
+    heights_m: NDArray[np.float64]
+    large: NDArray[np.bool_]
+    raster: NDArray[np.uint64]
+    origin_xy: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, earlier: Sequence[Detection]) -> Supports:
+        """The supports among a view's detections, the floor left out."""
+        chosen = [
+            d
+            for d in earlier
+            if d.affords("SupportAbility", 0.3)
+            and not d.measures.get("is_floor")
+            and len(d.footprint_xy) >= 3
+        ]
+        chosen.sort(key=lambda d: (-d.n_pixels, tuple(d.position_xyz)))
+        chosen = sorted(chosen[:MAX_SUPPORTS], key=lambda d: -float(d.position_xyz[2]))
+        heights = np.array([float(d.position_xyz[2]) for d in chosen])
+        areas = np.array([d.measures.get("area", 0.0) for d in chosen])
+        raster, origin = _raster(chosen, earlier)
+        for d in earlier:
+            if d.segment_xy is not None and _is_wall(d):
+                _mark_wall(raster, origin, d.segment_xy)
+        return cls(tuple(chosen), heights, areas >= LARGE_SUPPORT_M2, raster, origin)
+
+
+def _raster(
+    chosen: Sequence[Detection], earlier: Sequence[Detection]
+) -> tuple[NDArray[np.uint64], NDArray[np.float64]]:
+    """Supports' hulls as bits of a grid that reaches as far as anything that was detected."""
+    reach = [d.footprint_xy for d in earlier if len(d.footprint_xy)]
+    if not reach:
+        return np.zeros((1, 1), np.uint64), np.zeros(2)
+    pad = (HULL_MARGIN_CELLS + 2) * RASTER_M
+    origin = np.min([xy.min(axis=0) for xy in reach], axis=0) - pad
+    far = np.max([xy.max(axis=0) for xy in reach], axis=0) + pad
+    shape = np.ceil((far - origin) / RASTER_M).astype(int) + 1
+    raster = np.zeros((int(shape[0]), int(shape[1])), np.uint64)
+    kernel = np.ones((2 * HULL_MARGIN_CELLS + 1,) * 2, np.uint8)
+    for k, d in enumerate(chosen):
+        ij = np.floor((d.footprint_xy - origin) / RASTER_M).astype(np.int32)
+        low = ij.min(axis=0) - HULL_MARGIN_CELLS
+        size = ij.max(axis=0) - low + 1 + HULL_MARGIN_CELLS
+        mask = np.zeros((int(size[0]), int(size[1])), np.uint8)
+        hull = cv2.convexHull((ij - low)[:, ::-1].astype(np.int32))
+        cv2.fillConvexPoly(mask, hull, 1)
+        mask = cv2.dilate(mask, kernel)
+        raster[low[0] : low[0] + size[0], low[1] : low[1] + size[1]] |= mask.astype(
+            np.uint64
+        ) << np.uint64(k)
+    return raster, origin
+
+
+def _is_wall(bound: Detection) -> bool:
+    """Whether an upright plane is one plane, and larger than the side of a bin or a carton."""
+    length = bound.measures.get("length", 0.0)
+    large = length >= WALL_LENGTH_M or bound.measures.get("height", 0.0) >= WALL_HEIGHT_M
+    return large and bound.measures.get("rms", 0.0) < WALL_RMS_M
+
+
+def _mark_wall(
+    raster: NDArray[np.uint64], origin: NDArray[np.float64], segment_xy: NDArray[np.float64]
+) -> None:
+    """Set the wall bit where an upright plane stands, so that it isn't a thing on a support."""
+    mask = np.zeros(raster.shape, np.uint8)
+    ends = np.floor((segment_xy - origin) / RASTER_M).astype(int)[:, ::-1]
+    cv2.line(mask, tuple(ends[0].tolist()), tuple(ends[1].tolist()), 1, WALL_CELLS)
+    raster |= mask.astype(np.uint64) << WALL_BIT
