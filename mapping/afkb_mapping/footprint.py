@@ -9,6 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb_mapping.outlines import outline_of_cells
+
 SEEN_SHARE = 0.2
 """A cell belongs to the outline if it was seen this often, relative to the well-seen cells:
 stray points of single frames lie below, whatever the number of frames."""
@@ -142,17 +144,12 @@ class Footprint:
         closed = cv2.morphologyEx(
             mask, cv2.MORPH_CLOSE, np.ones((2 * margin - 1,) * 2, dtype=np.uint8)
         )
-        contours, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-        if not contours:
+        if not closed.any():
             raise ValueError("an empty footprint has no outline")
-        # cv2 calls our second index x; swap back.
-        largest = max(contours, key=cv2.contourArea)[:, 0, ::-1]
-        corners = (largest - margin + self._low + 0.5) * self.cell_m
-        center, size, yaw = self._rectangle(corners)
-        simple = cv2.approxPolyDP(corners.astype(np.float32)[:, None], 0.75 * self.cell_m, True)
-        return Outline(
-            center, size, yaw, simple[:, 0].astype(np.float64), closed.sum() * self.cell_m**2
-        )
+        low_xy = (self._low - margin).astype(np.float64) * self.cell_m
+        polygon = outline_of_cells(closed, self.cell_m, low_xy)
+        center, size, yaw = self._rectangle(polygon)
+        return Outline(center, size, yaw, polygon, float(closed.sum()) * self.cell_m**2)
 
     def _rectangle(
         self, corners: NDArray[np.float64]

@@ -16,6 +16,7 @@ from scipy import ndimage
 from afkb.flow import OccupancyGrid
 from afkb_mapping.doorways import DoorwayShape, find_doorways
 from afkb_mapping.free_space import Mask, free_space, seen_space
+from afkb_mapping.outlines import outline_of_cells
 from afkb_mapping.room_borders import cut_at_doorways
 
 Labels = NDArray[np.int32]
@@ -132,15 +133,9 @@ def _numbered(labels: Labels) -> Labels:
 def _shape(
     labels: Labels, label: int, clearance: NDArray[np.float32], grid: OccupancyGrid
 ) -> RoomShape:
-    import cv2
-
     mask = labels == label
-    contours, _ = cv2.findContours(
-        mask.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE
-    )
-    outline = cv2.approxPolyDP(max(contours, key=cv2.contourArea), 1.0, True)
-    cells = outline.reshape(-1, 2).astype(np.float64)
-    polygon = (cells + 0.5) * grid.resolution_m + np.array(grid.origin_xy)
+    origin = np.array(grid.origin_xy)
+    polygon = outline_of_cells(mask.astype(np.uint8), grid.resolution_m, origin, axes="yx")
     row, col = np.unravel_index(np.argmax(np.where(mask, clearance, -1.0)), mask.shape)
     x, y = (np.array([col, row]) + 0.5) * grid.resolution_m + np.array(grid.origin_xy)
     return RoomShape(label, float(mask.sum() * grid.resolution_m**2), polygon, (float(x), float(y)))
