@@ -8,6 +8,8 @@ from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Protocol, TypeVar
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import pluggy
 
@@ -100,7 +102,11 @@ class PluginHost:
         )
 
     def open_source(self, uri: str, options: Mapping[str, str] | None = None) -> Source:
-        """The recording at `uri`, opened by whichever plugin knows it; `SourceError` if none."""
+        """The recording at `uri`, opened by whichever plugin knows it; `SourceError` if none.
+
+        `file://` URIs and `~` stand for paths.
+        """
+        uri = _as_path(uri)
         source = self.manager.hook.afkb_open_source(
             uri=uri, options=dict(options or {}), knowledge_base=self.knowledge_base
         )
@@ -136,6 +142,13 @@ class PluginHost:
     def _collect(self, hook: pluggy.HookCaller) -> list[T]:
         groups: Iterable[Iterable[T]] = hook(knowledge_base=self.knowledge_base)
         return sorted((item for group in groups for item in group), key=lambda item: item.name)
+
+
+def _as_path(uri: str) -> str:
+    """A `file://` URI or a path from the home folder as a plain path; other URIs as they are."""
+    if uri.startswith("file://"):
+        return url2pathname(urlsplit(uri).path)
+    return str(Path(uri).expanduser()) if uri.startswith("~") else uri
 
 
 def _chosen(what: str, items: list[T], names: Sequence[str]) -> list[T]:

@@ -24,6 +24,8 @@ SOFT_HEIGHT_M, SOFT_OVERLAP = 0.06, 0.5
 soft or hollow seat, or a tray on its table."""
 THING_REACH_M = 0.06
 THING_HEIGHT_M = 0.06
+FOOTPRINT_SPACING_M = 0.02
+"""How far apart a detection's footprint points lie, by its contract."""
 FAR_M = 1e3
 
 
@@ -202,7 +204,7 @@ def _same_thing(first: ObservedTrack, second: ObservedTrack) -> bool:
     if not _overlap_in_height(first, second.bottom.value, second.top.value):
         return False
     shared = max(
-        first.footprint.share_within(second.footprint.points(), THING_CELL_M),
-        second.footprint.share_within(first.footprint.points(), THING_CELL_M),
+        first.footprint.share_within(second.footprint.points(), FOOTPRINT_SPACING_M),
+        second.footprint.share_within(first.footprint.points(), FOOTPRINT_SPACING_M),
     )
     return shared > 0.5

@@ -26,7 +26,9 @@ def add_commands(cli: typer.Typer) -> None:
 
 def map_(
     ctx: typer.Context,
-    source: Annotated[str, typer.Argument(help="Recording: a path or URI; see `afkb plugins`.")],
+    source: Annotated[
+        str, typer.Argument(metavar="SOURCE", help="Recording: a path or URI; see `afkb plugins`.")
+    ],
     out: Annotated[Path, typer.Option(help="Map folder to write; replaced whole if it is a map.")],
     detector: Annotated[
         list[str] | None, typer.Option(help="Use only this detector; repeat for several.")

@@ -9,6 +9,7 @@ import numpy as np
 from afkb.flow import Entity, NodeKind
 from afkb.inference import Network
 from afkb_mapping.footprint import Outline
+from afkb_mapping.standing import FOOT_HIDDEN_M, STANDS_WITHIN_M, support_of
 from afkb_mapping.tracks import ObservedTrack, PredictedTrack
 
 EXISTS_FROM = 0.5
@@ -18,28 +19,26 @@ cue that a few of them took for something."""
 SUSTAINED = 0.8
 """A thing seen in one view only is kept if that view was this sure of it."""
 SMALLEST_SURFACE_M2 = 0.02
-STANDS_WITHIN_M = 0.06
-"""A thing's foot and the surface it stands on agree within this: noise of both."""
-FOOT_HIDDEN_M = 0.20
 SURFACE_THICKNESS_M = 0.02
 
 
 def observed_entities(tracks: Sequence[ObservedTrack], network: Network) -> list[Entity]:
     """Entities (V_ao) of the tracks that are sure enough, in order of discovery."""
-    kept = [t for t in tracks if _is_kept(t)]
+    kept = [t for t in tracks if is_kept(t)]
     things = [t for t in kept if not t.is_surface]
     kept = [t for t in kept if not (t.is_surface and _is_part_of_thing(t, things))]
     outlines = {t.id: t.footprint.outline() for t in kept}
     surfaces = [t for t in kept if t.is_surface]
     known = {t.id for t in kept}
     return [
-        _observed(t, outlines[t.id], _support_of(t, surfaces), known, network)
+        _observed(t, outlines[t.id], support_of(t, surfaces), known, network)
         for t in kept
         if t.is_floor or not t.is_surface or outlines[t.id].area_m2 >= SMALLEST_SURFACE_M2
     ]
 
 
-def _is_kept(track: ObservedTrack) -> bool:
+def is_kept(track: ObservedTrack) -> bool:
+    """Whether a track is sure enough to be stated in the map."""
     if track.existence < EXISTS_FROM or not track.footprint:
         return False
     if max(track.affordances.values()) < CONVINCING:
@@ -57,31 +56,10 @@ def _is_part_of_thing(surface: ObservedTrack, things: Iterable[ObservedTrack]) -
     )
 
 
-def _support_of(track: ObservedTrack, surfaces: Iterable[ObservedTrack]) -> str | None:
-    """The surface right below a thing, by outline and height.
-
-    The floor by height alone, since what stands on it hides it.
-    """
-    if track.is_surface:
-        return None
-    if track.bottom.value <= STANDS_WITHIN_M:
-        return next((s.id for s in surfaces if s.is_floor), None)
-    points = track.footprint.points()
-    best: tuple[float, str] | None = None
-    for surface in surfaces:
-        gap = track.bottom.value - surface.top.value
-        if not -STANDS_WITHIN_M <= gap <= FOOT_HIDDEN_M:
-            continue
-        on_it = surface.footprint.share_within(points, 2 * surface.footprint.cell_m)
-        if on_it > 0.3 and (best is None or abs(gap) < best[0]):
-            best = abs(gap), surface.id
-    return best[1] if best else None
-
-
 def _observed(
     track: ObservedTrack,
     outline: Outline,
-    support: str | None,
+    support: ObservedTrack | None,
     known: Collection[str],
     network: Network,
 ) -> Entity:
@@ -110,7 +88,7 @@ def _observed(
         last_seen=track.last_seen,
         seen_from=tuple(track.places),
         generated_by=tuple(track.detectors),
-        supported_by=support,
+        supported_by=support.id if support else None,
         predicted_from=tuple(i for i in track.predicted_from if i in known),
         predicted_first=track.predicted_first,
         axioms=tuple(track.axioms),
@@ -138,13 +116,19 @@ def _known_categories(track: PredictedTrack, network: Network) -> dict[str, floa
     return {name: p for name, p in track.categories.items() if name in known}
 
 
-def supports_expected(predictions: Iterable[PredictedTrack]) -> dict[str, str]:
-    """Thing to the unseen support that it follows from: id to id."""
+def supports_expected(
+    predictions: Iterable[PredictedTrack], tracks: Iterable[ObservedTrack]
+) -> dict[str, str]:
+    """Thing to the unseen support that it follows from and may stand on: id to id."""
+    bottoms = {t.id: t.bottom.value for t in tracks}
     return {
         anchor: track.id
         for track in predictions
         if track.kind is NodeKind.DUAL and "SupportAbility" in track.affordances
         for anchor in track.anchors
+        if track.top_range_m[0] - STANDS_WITHIN_M
+        <= bottoms.get(anchor, -1.0)
+        <= track.top_range_m[1] + FOOT_HIDDEN_M
     }
 
 

@@ -7,17 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import Closure, Detection, Hypothesis, TopologicalMap, View
+from afkb.flow import Closure, Detection, Hypothesis, Relation, TopologicalMap, View
 from afkb.inference import Network
 from afkb.knowledge import KnowledgeBase
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
+from afkb_mapping.entities import is_kept
 from afkb_mapping.grid_input import insert_view
 from afkb_mapping.grounding import fits, ground, joined, same_prediction
 from afkb_mapping.ids import Ids
 from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
 from afkb_mapping.snapshot import MapContent, snapshot
+from afkb_mapping.standing import support_of
 from afkb_mapping.tracks import ObservedTrack, PredictedTrack
 from afkb_mapping.update_rules import against, update_rule
 from afkb_mapping.visibility import Look, Sight
@@ -87,10 +89,10 @@ class AffordanceMapper:
 
     def _enter(self, view: View) -> None:
         assert view.T_map_base is not None
+        insert_view(self._grid, view)
         self._trajectory.append((view.stamp, view.T_map_base))
         if view.depth_m is not None:
             self._looked_from.append(view.T_map_base[:2, 3])
-        insert_view(self._grid, view)
 
     def _confirm(self, observed: Sequence[ObservedTrack | None], view: View) -> None:
         for track in dict.fromkeys(t for t in observed if t is not None):
@@ -130,11 +132,18 @@ class AffordanceMapper:
             anchors = [t for i in hypothesis.anchors if (t := observed[i]) is not None]
             if not anchors:
                 continue
+            if hypothesis.relation is Relation.BELOW and self._all_stand(anchors):
+                continue
             hidden = not any("support_height" in detections[i].measures for i in hypothesis.anchors)
             track = ground(hypothesis, anchors, hidden, view, self._grid)
             if track is not None and not self._fulfilled(track):
                 expected.append(track)
         return expected
+
+    def _all_stand(self, anchors: Sequence[ObservedTrack]) -> bool:
+        """Whether what carries each anchor has been seen."""
+        surfaces = [t for t in self._association.tracks if t.is_surface and is_kept(t)]
+        return all(support_of(a, surfaces) is not None for a in anchors)
 
     def _fulfilled(self, prediction: PredictedTrack) -> bool:
         return any(fits(prediction, track) for track in self._association.tracks)

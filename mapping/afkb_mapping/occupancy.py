@@ -25,6 +25,8 @@ LOG_ODDS_LIMIT = 3.5
 """Clamp (probability 0.03 to 0.97), so that what is moved away is gone after some ten looks."""
 MAX_FREE_RANGE_M = 15.0
 """Beams clear cells up to here: further off, the angle between beams leaves gaps anyway."""
+MOST_CELLS = 40_000_000
+"""What fits into the memory that a run may take: 500 m x 200 m at 5 cm."""
 MARGIN_M = 5.0
 """The array grows by at least this much, so that growing stays rare."""
 
@@ -130,6 +132,9 @@ class GridBuilder:
         margin = math.ceil(MARGIN_M / self._resolution)
         low, high = low - margin, high + margin
         cols, rows = (int(n) for n in high - low)
+        if cols * rows > MOST_CELLS:
+            extent = " x ".join(f"{n * self._resolution:.3g}" for n in (cols, rows))
+            raise BadFrame(f"the map would be {extent} m: its pose or its depth can't be right")
         log_odds = np.zeros((rows, cols), dtype=np.float32)
         seen = np.zeros((rows, cols), dtype=bool)
         if size.any():

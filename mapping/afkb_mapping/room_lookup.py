@@ -13,25 +13,38 @@ REACH_M = 1.5
 
 
 class RoomLookup:
-    """Rooms by position; `room_at` names them `room-1`, `room-2` …, largest first."""
+    """Rooms by position, named `room-1`, `room-2` …, largest first."""
 
     def __init__(self, segmentation: Segmentation, grid: OccupancyGrid) -> None:
         self._resolution_m, self._origin_xy = grid.resolution_m, np.asarray(grid.origin_xy)
         self._nearest = segmentation.labels
+        self._distance_m = np.zeros(segmentation.labels.shape)
         if segmentation.rooms:
             distance, cells = ndimage.distance_transform_edt(
                 segmentation.labels == 0, return_indices=True
             )
-            nearest = segmentation.labels[tuple(cells)]
-            self._nearest = np.where(distance * grid.resolution_m <= REACH_M, nearest, 0)
+            self._nearest = segmentation.labels[tuple(cells)]
+            self._distance_m = distance * grid.resolution_m
 
     def room_at(self, x: float, y: float) -> str | None:
         """Id of the room at a point of the map frame (m), or None far from every room."""
-        col, row = np.floor((np.array([x, y]) - self._origin_xy) / self._resolution_m).astype(int)
+        row, col = self._cell(x, y)
         rows, cols = self._nearest.shape
-        if not (0 <= row < rows and 0 <= col < cols) or not self._nearest[row, col]:
+        if not (0 <= row < rows and 0 <= col < cols) or self._distance_m[row, col] > REACH_M:
             return None
-        return room_id(int(self._nearest[row, col]))
+        label = int(self._nearest[row, col])
+        return room_id(label) if label else None
+
+    def nearest_room(self, x: float, y: float) -> str | None:
+        """Id of the room nearest to where the robot stood, even at the edge of what it saw."""
+        rows, cols = self._nearest.shape
+        row, col = self._cell(x, y)
+        label = int(self._nearest[min(max(row, 0), rows - 1), min(max(col, 0), cols - 1)])
+        return room_id(label) if label else None
+
+    def _cell(self, x: float, y: float) -> tuple[int, int]:
+        col, row = np.floor((np.array([x, y]) - self._origin_xy) / self._resolution_m).astype(int)
+        return int(row), int(col)
 
 
 def room_id(label: int) -> str:

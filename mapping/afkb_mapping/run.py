@@ -17,11 +17,16 @@ from afkb.plugins.protocols import Detector, Mapper, Predictor
 from afkb.store import check_out, write_map
 from afkb_mapping.interruption import Interruption
 from afkb_mapping.levelling import Level, level
+from afkb_mapping.pose_gate import PoseGate
 from afkb_mapping.registration import ScanRegistration
 from afkb_mapping.run_record import Settings, Stages, run_record
 from afkb_mapping.selection import Selection
 
 NO_DEPTH = "no depth in this recording: the map has a grid and rooms by their shape, no affordances"
+
+NOTHING_SEEN = (
+    "nothing was detected in any depth image: check the depth scale, the intrinsics and the poses"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,6 +151,7 @@ class _Way:
     crew: _Crew
     registration: ScanRegistration
     stages: Stages
+    gate: PoseGate = field(default_factory=PoseGate)
     used: int = 0
     with_depth: int = 0
     skipped: list[SkippedFrame] = field(default_factory=list)
@@ -174,12 +180,13 @@ class _Way:
             yield frame
 
     def _take_in(self, frame: View) -> None:
-        with self.stages.timed("register"):
-            view = replace(frame, T_map_base=self.registration.place(frame).T_map_base)
         try:
+            self.gate.check(frame)
+            with self.stages.timed("register"):
+                view = replace(frame, T_map_base=self.registration.place(frame).T_map_base)
             self.crew.take_in(view)
         except BadFrame as error:
-            self.skipped.append(SkippedFrame(view.index, f"view {view.index}", str(error)))
+            self.skipped.append(SkippedFrame(frame.index, f"frame {frame.index}", str(error)))
             return
         self.used += 1
         self.with_depth += view.depth_m is not None
@@ -190,6 +197,8 @@ def _blamed(what: str, name: str) -> Iterator[None]:
     """Say whose fault it is when a plugin fails, whatever it fails with."""
     try:
         yield
+    except BadFrame:
+        raise
     except Exception as error:
         raise PluginError(
             f"{what} {name!r} failed with {type(error).__name__}: {error}; "
@@ -199,8 +208,9 @@ def _blamed(what: str, name: str) -> Iterator[None]:
 
 def _finished(mapper: Mapper, levelled: Level, way: _Way) -> TopologicalMap:
     found = mapper.finish(levelled.T_map_source)
-    notes = (levelled.note, None if way.with_depth else NO_DEPTH)
-    return replace(found, notes=(*found.notes, *(n for n in notes if n)))
+    nothing = NO_DEPTH if not way.with_depth else None if found.entities else NOTHING_SEEN
+    notes = (n for n in (levelled.note, nothing) if n)
+    return replace(found, notes=(*found.notes, *notes))
 
 
 def _state(found: TopologicalMap) -> dict[str, bytes]:

@@ -65,7 +65,7 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
     observed = observed_entities(content.tracks, content.network)
     known = {e.id for e in observed}
     entities = [*observed, *predicted_entities(content.predictions, content.network, known)]
-    supports = supports_expected(content.predictions)
+    supports = supports_expected(content.predictions, content.tracks)
     entities = [
         replace(
             e,
@@ -103,7 +103,7 @@ def _notes(observed: Sequence[Entity]) -> Iterator[str]:
 
 
 def _robot_place(place: Place, lookup: RoomLookup) -> RobotPlace:
-    room = lookup.room_at(place.x, place.y)
+    room = lookup.nearest_room(place.x, place.y)
     return RobotPlace(place.id, place.x, place.y, place.yaw, place.stamp, place.view_index, room)
 
 
@@ -128,8 +128,8 @@ def _rooms(
 ) -> list[Room]:
     """Rooms with the posterior that the affordances in them give (paper §II.F)."""
     visited = {p.room for p in places}
-    visited |= {lookup.room_at(T[0, 3], T[1, 3]) for _, T in content.trajectory}
-    looked_at = {lookup.room_at(*xy) for xy in content.looked_from}
+    visited |= {lookup.nearest_room(T[0, 3], T[1, 3]) for _, T in content.trajectory}
+    looked_at = {lookup.nearest_room(*xy) for xy in content.looked_from}
     rooms = []
     for shape in segmentation.rooms:
         id_ = room_id(shape.label)

@@ -38,10 +38,10 @@ class ObservedOnlyMapper:
     ) -> None:
         """Take in what was seen in one placed view."""
         assert view.T_map_base is not None
+        insert_view(self._grid, view)
         self._trajectory.append((view.stamp, view.T_map_base))
         if view.depth_m is not None:
             self._looked_from.append(view.T_map_base[:2, 3])
-        insert_view(self._grid, view)
         seen = [t for t in self._association.match(view, detections) if t is not None]
         in_view = {t.id: None for t in seen if not t.is_floor}
         place = self._places.visit(view, in_view, self._grid.in_sight)

@@ -119,6 +119,21 @@ def test_a_bad_or_missing_pose_is_skipped_and_counted(afkb, recording, tmp_path,
     assert "frame-000001" in result.stderr
 
 
+def test_an_absurd_pose_is_skipped_and_the_map_stays_small(afkb, recording, tmp_path):
+    T = T_LOOKING_AHEAD.copy()
+    T[0, 3] = 1e6
+    np.savetxt(recording / "frame-000002.pose.txt", T)
+    result = afkb("map", recording, "--out", tmp_path / "map")
+    assert result.exit_code == 0, result.output
+    assert "1e+06 m from the last one" in result.stderr
+    assert (tmp_path / "map" / "occupancy.pgm").stat().st_size < 1_000_000
+
+
+def test_a_recording_may_be_named_by_a_file_uri(afkb, recording, tmp_path):
+    result = afkb("map", recording.as_uri(), "--out", tmp_path / "map")
+    assert result.exit_code == 0, result.output
+
+
 @pytest.mark.parametrize("name", ["noise.bag", "noise.mcap", "noise.log", "noise.db3"])
 def test_random_bytes_under_a_recordings_name(afkb, tmp_path, name):
     (tmp_path / name).write_bytes(np.random.default_rng(1).bytes(4096))
