@@ -55,25 +55,52 @@ def pixels_by_label(
     `labels` (H, W); of those above 0, label k holds `u[starts[k]:starts[k + 1]]`, in the order
     of the image. `thin` (n_labels,): of a label, every such row and column alone is taken.
     """
-    rows, cols = labels.shape
-    n = len(wanted)
-    starts = np.zeros(n + 1, np.int64)
-    for i in range(rows):
-        for j in range(cols):
-            k = labels[i, j]
-            if k > 0 and wanted[k] and (thin[k] == 1 or (i % thin[k] == 0 and j % thin[k] == 0)):
-                starts[k + 1] += 1
-    for k in range(n):
+    runs, count = _runs_of_labels(labels, wanted)
+    starts = np.zeros(len(wanted) + 1, np.int64)
+    for r in range(count):
+        k = runs[r, 0]
+        starts[k + 1] += _taken(runs[r], thin[k])
+    for k in range(len(wanted)):
         starts[k + 1] += starts[k]
-    u, v = np.empty(starts[n], np.int32), np.empty(starts[n], np.int32)
+    u, v = np.empty(starts[-1], np.int32), np.empty(starts[-1], np.int32)
     fill = starts[:-1].copy()
-    for i in range(rows):
-        for j in range(cols):
-            k = labels[i, j]
-            if k > 0 and wanted[k] and (thin[k] == 1 or (i % thin[k] == 0 and j % thin[k] == 0)):
-                u[fill[k]], v[fill[k]] = j, i
-                fill[k] += 1
+    for r in range(count):
+        k, i, first, last = runs[r]
+        n = fill[k]
+        fill[k] += _taken(runs[r], thin[k])
+        if i % thin[k] == 0:
+            for j in range((first + thin[k] - 1) // thin[k] * thin[k], last, thin[k]):
+                u[n], v[n] = j, i
+                n += 1
     return u, v, starts
+
+
+@kernel
+def _taken(run: NDArray[np.int32], thin: int) -> int:
+    """How many pixels of a run are taken."""
+    if run[1] % thin != 0:
+        return 0
+    return (run[3] + thin - 1) // thin - (run[2] + thin - 1) // thin
+
+
+@kernel
+def _runs_of_labels(
+    labels: NDArray[np.signedinteger], wanted: NDArray[np.bool_]
+) -> tuple[NDArray[np.int32], int]:
+    """Runs of wanted labels along rows, as (label, row, first, last + 1), and their number."""
+    rows, cols = labels.shape
+    runs, count = np.empty((labels.size, 4), np.int32), 0
+    for i in range(rows):
+        j = 0
+        while j < cols:
+            k, first = labels[i, j], j
+            j += 1
+            while j < cols and labels[i, j] == k:
+                j += 1
+            if k > 0 and wanted[k]:
+                runs[count, 0], runs[count, 1], runs[count, 2], runs[count, 3] = k, i, first, j
+                count += 1
+    return runs, count
 
 
 @kernel

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from afkb.flow import Detection, View
 from afkb_containers.clusters import Cluster, clusters_from_above, surroundings
 from afkb_containers.concavity import find_opening
-from afkb_containers.hidden import things_on_hidden_supports, things_on_the_floor
+from afkb_containers.hidden import Loose, things_on_hidden_supports, things_on_the_floor
 from afkb_containers.judge import LEAST_CLAIM, container_detection, judge
 from afkb_containers.scene import Scene
 from afkb_containers.settings import ContainerSettings
@@ -46,10 +46,11 @@ class ContainerDetector:
         scene = Scene.of(view, earlier, s)
         if scene is None:
             return []
+        loose = Loose.of(scene)
         things = chain(
             self._on_supports(scene),
-            things_on_hidden_supports(scene, s.min_pixels),
-            things_on_the_floor(scene, s.min_pixels),
+            things_on_hidden_supports(scene, loose, s.min_pixels),
+            things_on_the_floor(scene, loose, s.min_pixels),
         )
         mine = np.zeros(scene.depth_m.shape, np.int32)
         judged = (self._detection(c, scene, mine, name) for name, c in enumerate(things, start=1))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -30,40 +31,77 @@ HIDDEN_SHARE = 0.6
 """Share of a thing's lower outline that something nearer must cover."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Loose:
+    """Pixels off every support and wall, within range: columns, rows, and squares (N, 2)."""
+
+    u: NDArray[np.int32]
+    v: NDArray[np.int32]
+    heights_m: NDArray[np.float32]
+    ij: NDArray[np.int32]
+
+    @classmethod
+    def of(cls, scene: Scene) -> Loose:
+        """All that things are looked for in, whether on hidden supports or on the floor."""
+        low, high = min(NEAREST_FLOOR_M, FLOOR_M), max(HIGHEST_M, BIN_M[1])
+        camera_xy = scene.camera_xyz[:2].copy()
+        return cls(*_loose(scene.depth_m, scene.points, scene.labels, camera_xy, low, high))
+
+
 @kernel
-def _seen_from_above(
+def _loose(
     depth_m: NDArray[np.float32],
     points: NDArray[np.float32],
     labels: NDArray[np.int16],
     camera_xy: NDArray[np.float64],
     low_m: float,
     high_m: float,
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.uint8]]:
-    """Pixels off every support and wall, between two heights, within range.
-
-    Returns their columns and rows, the grid square of each (flat index), and the grid.
-    """
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32], NDArray[np.int32]]:
+    """Columns, rows, heights and squares of pixels between two heights, off supports and walls."""
     rows, cols = depth_m.shape
-    side = int(2 * FARTHEST_M / CELL_M) + 3
-    grid = np.zeros((side, side), np.uint8)
     us, vs = np.empty(rows * cols, np.int32), np.empty(rows * cols, np.int32)
-    square = np.empty(rows * cols, np.int32)
+    heights, ij = np.empty(rows * cols, np.float32), np.empty((rows * cols, 2), np.int32)
     n = 0
     for v in range(rows):
         for u in range(cols):
             if labels[v, u] != 0 or depth_m[v, u] <= 0:
                 continue
             h = points[v, u, 2]
-            if not (low_m < h < high_m):
-                continue
             dx, dy = points[v, u, 0] - camera_xy[0], points[v, u, 1] - camera_xy[1]
-            if dx * dx + dy * dy > FARTHEST_M * FARTHEST_M:
+            if not (low_m < h < high_m) or dx * dx + dy * dy > FARTHEST_M * FARTHEST_M:
                 continue
-            i, j = int((dx + FARTHEST_M) / CELL_M), int((dy + FARTHEST_M) / CELL_M)
-            grid[i, j] = 1
-            us[n], vs[n], square[n] = u, v, i * side + j
+            us[n], vs[n], heights[n] = u, v, h
+            ij[n, 0] = int((dx + FARTHEST_M) / CELL_M)
+            ij[n, 1] = int((dy + FARTHEST_M) / CELL_M)
             n += 1
-    return us[:n], vs[:n], square[:n], grid
+    return us[:n], vs[:n], heights[:n], ij[:n]
+
+
+@kernel
+def _grid_between(
+    heights_m: NDArray[np.float32], ij: NDArray[np.int32], low_m: float, high_m: float
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.uint8]]:
+    """Indexes of what lies between two heights, the square of each (flat), and their grid."""
+    index, n = np.empty(len(heights_m), np.int64), 0
+    i0 = j0 = np.int64(1 << 30)
+    i1 = j1 = np.int64(-1)
+    for k in range(len(heights_m)):
+        if low_m < heights_m[k] < high_m:
+            index[n] = k
+            n += 1
+            i, j = np.int64(ij[k, 0]), np.int64(ij[k, 1])
+            i0, j0, i1, j1 = min(i0, i), min(j0, j), max(i1, i), max(j1, j)
+    if n == 0:
+        return index[:0], index[:0], np.zeros((1, 1), np.uint8)
+    # an even corner: OpenCV numbers components by blocks of two squares
+    i0, j0 = i0 // 2 * 2, j0 // 2 * 2
+    grid = np.zeros((i1 - i0 + 2, j1 - j0 + 2), np.uint8)
+    square = np.empty(n, np.int64)
+    for m in range(n):
+        i, j = ij[index[m], 0] - i0, ij[index[m], 1] - j0
+        grid[i, j] = 1
+        square[m] = i * grid.shape[1] + j
+    return index[:n], square, grid
 
 
 @kernel
@@ -89,9 +127,9 @@ def _hidden_below(
     return hidden / max(total, 1)
 
 
-def things_on_hidden_supports(scene: Scene, min_pixels: int) -> Iterator[Cluster]:
+def things_on_hidden_supports(scene: Scene, loose: Loose, min_pixels: int) -> Iterator[Cluster]:
     """Compact bodies that stand apart, seen from above, and whose foot something nearer covers."""
-    for u, v in _apart_from_above(scene, NEAREST_FLOOR_M, HIGHEST_M, min_pixels):
+    for u, v in _apart_from_above(loose, NEAREST_FLOOR_M, HIGHEST_M, min_pixels):
         depths, xyz = scene.at(u, v)
         low, high = percentiles(xyz[:, 2], 0.0, 100.0)
         u0, _, u1, _ = extent(u, v)
@@ -100,9 +138,9 @@ def things_on_hidden_supports(scene: Scene, min_pixels: int) -> Iterator[Cluster
         yield Cluster(u, v, depths, xyz, scene.depth_m.shape, Stand.HIDDEN, None)
 
 
-def things_on_the_floor(scene: Scene, min_pixels: int) -> Iterator[Cluster]:
+def things_on_the_floor(scene: Scene, loose: Loose, min_pixels: int) -> Iterator[Cluster]:
     """Compact bodies that stand apart on the floor, as bins and baskets do."""
-    for u, v in _apart_from_above(scene, FLOOR_M, BIN_M[1] + 0.1, min_pixels):
+    for u, v in _apart_from_above(loose, FLOOR_M, BIN_M[1] + 0.1, min_pixels):
         depths, xyz = scene.at(u, v)
         _, top = percentiles(xyz[:, 2], 0.0, 98.0)
         if BIN_M[0] < top < BIN_M[1]:
@@ -110,13 +148,11 @@ def things_on_the_floor(scene: Scene, min_pixels: int) -> Iterator[Cluster]:
 
 
 def _apart_from_above(
-    scene: Scene, low_m: float, high_m: float, min_pixels: int
+    loose: Loose, low_m: float, high_m: float, min_pixels: int
 ) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int32]]]:
     """Pixels (u, v) of what is narrow enough and alone, seen from above."""
-    u, v, square, grid = _seen_from_above(
-        scene.depth_m, scene.points, scene.labels, scene.camera_xyz[:2].copy(), low_m, high_m
-    )
-    if len(u) < min_pixels:
+    index, square, grid = _grid_between(loose.heights_m, loose.ij, low_m, high_m)
+    if len(index) < min_pixels:
         return
     count, parts, stats, _ = cv2.connectedComponentsWithStats(
         cv2.dilate(grid, np.ones((2, 2), np.uint8)), connectivity=8
@@ -127,5 +163,5 @@ def _apart_from_above(
     narrow[0] = False
     order, starts = order_by_label(of, narrow)
     for k in np.flatnonzero(narrow):
-        member = order[starts[k] : starts[k + 1]]
-        yield u[member], v[member]
+        member = index[order[starts[k] : starts[k + 1]]]
+        yield loose.u[member], loose.v[member]

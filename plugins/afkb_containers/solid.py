@@ -48,12 +48,13 @@ def solid_of(
 ) -> Solid:
     """Judge a thing of a length, seen from above, by height, thickness and convexity."""
     height = percentile(cluster.points[:, 2], 98.0) - base_m
-    width, lean = thickness_and_lean(cluster.points, cluster.sigma_m)
+    sigma = cluster.sigma_m
+    width, lean = thickness_and_lean(cluster.points, sigma)
     fill = image_solidity(cluster.u, cluster.v)
     degree = (
         membership(height, settings.solid_height_m)
         * membership(max(height, length_m), settings.max_extent_m)
-        * membership(width - UNSURE * cluster.sigma_m, settings.solid_thickness_m)
+        * membership(width - UNSURE * sigma, settings.solid_thickness_m)
         * (1.0 - _ramp(lean, LEAN_DEG))
         * _ramp(fill, SOLIDITY)
     )

@@ -13,7 +13,7 @@ from afkb.flow import Detection
 from afkb_containers.judge import LEAST_CLAIM
 from afkb_containers.scene import Scene
 from afkb_containers.settings import ContainerSettings
-from afkb_mapping.from_above import box_around
+from afkb_mapping.from_above import box_around, hull_candidates
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
@@ -96,7 +96,7 @@ def _in_support(
     top = np.zeros(tuple((ij.max(axis=0) + RING_CELLS + 3).tolist()), np.uint8)
     top[ij[:, 0], ij[:, 1]] = 1
     hull = np.zeros_like(top)
-    cv2.fillConvexPoly(hull, cv2.convexHull(ij[:, ::-1]), 1)
+    cv2.fillConvexPoly(hull, cv2.convexHull(hull_candidates(ij[:, ::-1]).astype(np.int32)), 1)
     hull[(top > 0) & (hull > 0)] = ON_TOP
     rows, cols = scene.depth_m.shape
     box = support.image_box or (0, 0, cols, rows)

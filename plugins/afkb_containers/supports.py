@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection
+from afkb_mapping.from_above import hull_candidates
 
 RASTER_M = 0.02
 HULL_MARGIN_CELLS = 1
@@ -73,7 +74,7 @@ def _raster(
         low = ij.min(axis=0) - HULL_MARGIN_CELLS
         size = ij.max(axis=0) - low + 1 + HULL_MARGIN_CELLS
         mask = np.zeros((int(size[0]), int(size[1])), np.uint8)
-        hull = cv2.convexHull((ij - low)[:, ::-1].astype(np.int32))
+        hull = cv2.convexHull(hull_candidates((ij - low)[:, ::-1]).astype(np.int32))
         cv2.fillConvexPoly(mask, hull, 1)
         mask = cv2.dilate(mask, kernel)
         raster[low[0] : low[0] + size[0], low[1] : low[1] + size[1]] |= mask.astype(

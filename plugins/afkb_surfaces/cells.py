@@ -22,19 +22,22 @@ N_COLUMNS = 12
 
 @kernel
 def cell_sums(depth_m: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Moments of each cell: (rows, cols, 10) of n, u, v, w, uu, uv, vv, uw, vw, ww; w = 1/z."""
+    """Moments of each cell: (rows + 2, cols + 2, 10) of n, u, v, w, uu, uv, vv, uw, vw, ww.
+
+    w = 1/z; a margin of one empty cell lies around them.
+    """
     rows, cols = depth_m.shape[0] // CELL, depth_m.shape[1] // CELL
-    sums = np.zeros((rows, cols, 10))
+    sums = np.zeros((rows + 2, cols + 2, 10))
     for r in range(rows):
         for c in range(cols):
             n = 0
             su = sv = sw = suu = suv = svv = suw = svw = sww = 0.0
-            for i in range(CELL):
-                v = float(r * CELL + i)
-                for j in range(CELL):
-                    z = depth_m[r * CELL + i, c * CELL + j]
+            for i in range(r * CELL, (r + 1) * CELL):
+                v = float(i)
+                for j in range(c * CELL, (c + 1) * CELL):
+                    z = depth_m[i, j]
                     if z > 0:
-                        u, w = float(c * CELL + j), 1.0 / z
+                        u, w = float(j), 1.0 / z
                         n += 1
                         su += u
                         sv += v
@@ -45,7 +48,7 @@ def cell_sums(depth_m: NDArray[np.float32]) -> NDArray[np.float64]:
                         suw += u * w
                         svw += v * w
                         sww += w * w
-            s = sums[r, c]
+            s = sums[r + 1, c + 1]
             s[0], s[1], s[2], s[3] = n, su, sv, sw
             s[4], s[5], s[6], s[7], s[8], s[9] = suu, suv, svv, suw, svw, sww
     return sums
@@ -82,44 +85,36 @@ def cell_planes(
     `intrinsics` is fx, fy, cx, cy; the normal points to the camera.
     """
     fx, fy, cx, cy = intrinsics
-    rows, cols = sums.shape[:2]
+    rows, cols = sums.shape[0] - 2, sums.shape[1] - 2
     cells = np.zeros((rows, cols, N_COLUMNS))
     window, plane = np.zeros(10), np.zeros(8)
-    column = np.zeros((cols, 10))
+    column = np.zeros((cols + 2, 10))
     for r in range(rows):
-        for c in range(cols):
+        for c in range(cols + 2):
             for k in range(10):
-                total = sums[r, c, k]
-                if r > 0:
-                    total += sums[r - 1, c, k]
-                if r + 1 < rows:
-                    total += sums[r + 1, c, k]
-                column[c, k] = total
+                column[c, k] = sums[r + 1, c, k] + sums[r, c, k] + sums[r + 2, c, k]
         for c in range(cols):
-            if sums[r, c, 0] < CELL:
+            if sums[r + 1, c + 1, 0] < CELL:
                 continue
-            for wide in (True, False):
-                if wide:
-                    for k in range(10):
-                        total = column[c, k]
-                        if c > 0:
-                            total += column[c - 1, k]
-                        if c + 1 < cols:
-                            total += column[c + 1, k]
-                        window[k] = total
-                else:
-                    for k in range(10):
-                        window[k] = sums[r, c, k]
-                n = window[0]
-                if n < (4.5 if wide else 0.5) * CELL * CELL or not _fit(window, plane):
+            for k in range(10):
+                window[k] = column[c + 1, k] + column[c, k] + column[c + 2, k]
+            if window[0] < 4.5 * CELL * CELL or not _lies_flat(window, plane, softness_m):
+                narrow = sums[r + 1, c + 1]
+                if narrow[0] < 0.5 * CELL * CELL or not _lies_flat(narrow, plane, softness_m):
                     continue
-                z = 1.0 / plane[3]
-                sigma = depth_sigma(z)
-                if plane[4] * z * z > 1.6 * sigma + softness_m:
-                    continue
-                _write(cells[r, c], plane, n, sigma, fx, fy, cx, cy, T_map_camera)
-                break
+                _write(cells[r, c], plane, narrow[0], fx, fy, cx, cy, T_map_camera)
+            else:
+                _write(cells[r, c], plane, window[0], fx, fy, cx, cy, T_map_camera)
     return cells
+
+
+@kernel
+def _lies_flat(s: NDArray[np.float64], plane: NDArray[np.float64], softness_m: float) -> bool:
+    """Whether a plane fits moments as well as noise and softness allow; writes the plane."""
+    if not _fit(s, plane):
+        return False
+    z = 1.0 / plane[3]
+    return bool(plane[4] * z * z <= 1.6 * depth_sigma(z) + softness_m)
 
 
 @kernel
@@ -127,7 +122,6 @@ def _write(
     cell: NDArray[np.float64],
     plane: NDArray[np.float64],
     n: float,
-    sigma: float,
     fx: float,
     fy: float,
     cx: float,
@@ -139,6 +133,7 @@ def _write(
     pz = c + a * cx + b * cy
     length = np.sqrt(px * px + py * py + pz * pz)
     z = 1.0 / w
+    sigma = depth_sigma(z)
     xc, yc = (plane[6] - cx) / fx * z, (plane[7] - cy) / fy * z
     cell[A], cell[B], cell[C] = a, b, c
     for k in range(3):

@@ -8,7 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb_mapping.image_regions import pixels_by_label
 from afkb_mapping.kernels import kernel
+from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
 from afkb_surfaces.cells import CELL, DEPTH, X, Z
 from afkb_surfaces.grouping import SUPPORT
@@ -16,6 +18,8 @@ from afkb_surfaces.grouping import SUPPORT
 SAMPLES = 48
 SEEN_THROUGH = 2
 """Samples on the line between two parts that may show what lies behind the plane."""
+PART_SAMPLES = 150
+MIN_CELLS = 3
 
 
 @kernel
@@ -48,7 +52,7 @@ def _seen_through(
 
 @kernel
 def _closest(p: NDArray[np.float64], q: NDArray[np.float64]) -> tuple[float, int, int]:
-    """Smallest squared distance between two sets of points (N, 2), and the indexes of that pair."""
+    """Smallest squared distance between points (N, 2+) of two sets, and which these are."""
     best, bi, bj = np.inf, 0, 0
     for i in range(p.shape[0]):
         for j in range(q.shape[0]):
@@ -67,61 +71,73 @@ def join_fragments(
     T_map_camera: NDArray[np.float64],
     step_m: float,
     gap_m: float,
-    min_cells: int = 3,
 ) -> NDArray[np.int32]:
     """Labels (rows, cols) in which coplanar supports with only an occluder between them are one."""
-    rc = np.argwhere((kinds == SUPPORT) & (labels > 1))
-    if len(rc) == 0:
-        return labels
-    of = labels[rc[:, 0], rc[:, 1]]
-    order = np.argsort(of, kind="stable")
-    rc, of = rc[order], of[order]
-    names, starts = np.unique(of, return_index=True)
-    parts = [
-        _Part(int(n), group, cells)
-        for n, group in zip(names, np.split(rc, starts[1:]), strict=True)
-        if len(group) >= min_cells
-    ]
-    parts.sort(key=lambda p: (-len(p.rc), p.label))
-    target = {p.label: p.label for p in parts}
-    for i, big in enumerate(parts):
-        for small in parts[i + 1 :]:
-            if target[small.label] != small.label or abs(big.height - small.height) > (
-                step_m + 0.4 * float(depth_sigma(small.depth))
-            ):
+    n = int(labels.max()) + 1
+    wanted = np.zeros(n, np.bool_)
+    wanted[labels[kinds == SUPPORT]] = True
+    u, v, starts = pixels_by_label(labels, wanted, np.ones(n, np.int64))
+    sizes = np.diff(starts)
+    largest_first = np.argsort(-sizes, kind="stable")[: int((sizes >= MIN_CELLS).sum())]
+    target = _joined(
+        largest_first, u, v, starts, depth_m, cells, intrinsics, T_map_camera, step_m, gap_m
+    )
+    return target[labels]
+
+
+@kernel
+def _joined(
+    largest_first: NDArray[np.int64],
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
+    starts: NDArray[np.int64],
+    depth_m: NDArray[np.float32],
+    cells: NDArray[np.float64],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
+    step_m: float,
+    gap_m: float,
+) -> NDArray[np.int32]:
+    """The label (n_labels,) that each joins: of the largest part that it goes with, or its own.
+
+    Pixels (u, v) of label k begin at `starts[k]`.
+    """
+    target = np.arange(len(starts) - 1).astype(np.int32)
+    heights, depths = np.zeros(len(target)), np.zeros(len(target))
+    places = [np.zeros((0, 4))]
+    for k in largest_first:
+        part = slice(starts[k], starts[k + 1])
+        heights[k], depths[k], place = _place_of(u[part], v[part], cells)
+        places.append(place)
+    for i in range(len(largest_first)):
+        big = largest_first[i]
+        for j in range(i + 1, len(largest_first)):
+            small = largest_first[j]
+            step = step_m + 0.4 * depth_sigma(depths[small])
+            if target[small] != small or abs(heights[big] - heights[small]) > step:
                 continue
-            if big.sees_only_occluders_to(small, depth_m, intrinsics, T_map_camera, gap_m):
-                target[small.label] = target[big.label]
-    lookup = np.arange(int(labels.max()) + 1, dtype=np.int32)
-    for source, to in target.items():
-        lookup[source] = to
-    return lookup[labels]
+            squared, m, n = _closest(places[i + 1], places[j + 1])
+            if squared > gap_m * gap_m:
+                continue
+            start, end = places[i + 1][m, 2:], places[j + 1][n, 2:]
+            behind = _seen_through(depth_m, start, end, heights[big], intrinsics, T_map_camera)
+            if behind <= SEEN_THROUGH:
+                target[small] = target[big]
+    return target
 
 
-class _Part:
-    """One connected support: its cells, their height and place."""
-
-    def __init__(self, label: int, rc: NDArray[np.intp], cells: NDArray[np.float64]) -> None:
-        self.label, self.rc = label, rc
-        values = cells[rc[:, 0], rc[:, 1]]
-        self.height = float(np.median(values[:, Z]))
-        self.depth = float(np.median(values[:, DEPTH]))
-        thin = max(1, len(rc) // 150)
-        self.sample = rc[::thin]
-        self.xy = np.ascontiguousarray(values[::thin, X : X + 2])
-
-    def sees_only_occluders_to(
-        self,
-        other: _Part,
-        depth_m: NDArray[np.float32],
-        intrinsics: NDArray[np.float64],
-        T_map_camera: NDArray[np.float64],
-        gap_m: float,
-    ) -> bool:
-        squared, i, j = _closest(self.xy, other.xy)
-        if squared > gap_m * gap_m:
-            return False
-        start = (self.sample[i][::-1] + 0.5) * CELL
-        end = (other.sample[j][::-1] + 0.5) * CELL
-        seen = _seen_through(depth_m, start, end, self.height, intrinsics, T_map_camera)
-        return bool(seen <= SEEN_THROUGH)
+@kernel
+def _place_of(
+    u: NDArray[np.int32], v: NDArray[np.int32], cells: NDArray[np.float64]
+) -> tuple[float, float, NDArray[np.float64]]:
+    """Median height and depth of cells, m, and a sample (N, 4) of their x, y and pixel u, v."""
+    heights, depths = np.empty(len(u)), np.empty(len(u))
+    for k in range(len(u)):
+        heights[k], depths[k] = cells[v[k], u[k], Z], cells[v[k], u[k], DEPTH]
+    thin = max(1, len(u) // PART_SAMPLES)
+    place = np.empty(((len(u) + thin - 1) // thin, 4))
+    for n in range(len(place)):
+        i, j = v[n * thin], u[n * thin]
+        place[n, 0], place[n, 1] = cells[i, j, X], cells[i, j, X + 1]
+        place[n, 2], place[n, 3] = (j + 0.5) * CELL, (i + 0.5) * CELL
+    return percentile(heights, 50.0), percentile(depths, 50.0), place

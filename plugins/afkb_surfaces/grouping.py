@@ -111,37 +111,52 @@ def pixel_labels(
     """
     rows, cols = labels.shape
     out = np.zeros(depth_m.shape, np.int32)
+    planes, names = np.empty((9, 3)), np.empty(9, np.int32)
     for r in range(rows):
         for c in range(cols):
-            top, bottom = max(r - 1, 0), min(r + 2, rows)
-            left, right = max(c - 1, 0), min(c + 2, cols)
-            level = False
-            for i in range(top, bottom):
-                for j in range(left, right):
-                    level |= labels[i, j] > 0 and kinds[i, j] != UPRIGHT
-            if not level:
+            n = _planes_around(r, c, cells, labels, kinds, planes, names)
+            if n == 0:
                 continue
             here = labels[r, c]
+            p = cells[r, c]
             for v in range(r * CELL, (r + 1) * CELL):
                 for u in range(c * CELL, (c + 1) * CELL):
                     z = depth_m[v, u]
                     if not z > 0:
                         continue
                     w, best = 1.0 / z, 2.5 * depth_sigma(z) + softness_m
-                    if here > 0:
-                        p = cells[r, c]
-                        if abs(p[A] * u + p[B] * v + p[C] - w) * z * z < best:
-                            out[v, u] = here
-                            continue
-                    for i in range(top, bottom):
-                        for j in range(left, right):
-                            if labels[i, j] > 0:
-                                p = cells[i, j]
-                                off = abs(p[A] * u + p[B] * v + p[C] - w) * z * z
-                                if off < best:
-                                    best = off
-                                    out[v, u] = labels[i, j]
+                    if here > 0 and abs(p[A] * u + p[B] * v + p[C] - w) * z * z < best:
+                        out[v, u] = here
+                        continue
+                    for k in range(n):
+                        off = abs(planes[k, 0] * u + planes[k, 1] * v + planes[k, 2] - w) * z * z
+                        if off < best:
+                            best = off
+                            out[v, u] = names[k]
     return out
+
+
+@kernel
+def _planes_around(
+    r: int,
+    c: int,
+    cells: NDArray[np.float64],
+    labels: NDArray[np.int32],
+    kinds: NDArray[np.int8],
+    planes: NDArray[np.float64],
+    names: NDArray[np.int32],
+) -> int:
+    """Number of labelled cells within one cell, 0 where none is level; writes planes and labels."""
+    n, level = 0, False
+    for i in range(max(r - 1, 0), min(r + 2, labels.shape[0])):
+        for j in range(max(c - 1, 0), min(c + 2, labels.shape[1])):
+            if labels[i, j] > 0:
+                level |= kinds[i, j] != UPRIGHT
+                p = cells[i, j]
+                planes[n, 0], planes[n, 1], planes[n, 2] = p[A], p[B], p[C]
+                names[n] = labels[i, j]
+                n += 1
+    return n if level else 0
 
 
 @kernel
