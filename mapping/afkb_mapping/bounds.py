@@ -15,6 +15,7 @@ OFFSET_M = 0.08
 """Segments whose ends lie this near one line are one wall; the two sides of a wall are further."""
 ANGLE_RAD = np.deg2rad(8.0)
 """Greatest angle between them: short segments in noise turn that far, corners further."""
+WALL_M = 1.0
 GAP_M = 0.3
 """Ends this near are one wall with something before it; a doorway is wider."""
 
@@ -103,6 +104,24 @@ class BoundMerger:
         offset, gap, angle = _relation(self._ends[: len(self._walls)], segment)
         fits = (offset < OFFSET_M) & (gap < GAP_M) & (angle < ANGLE_RAD)
         return int(np.argmin(np.where(fits, offset, np.inf))) if fits.any() else None
+
+    def part(self, start_xy: Array, end_xy: Array) -> bool:
+        """Whether a wall crosses the straight line between two points (2,), m.
+
+        Shorter bounds than `WALL_M` are fronts and backs of furniture.
+        """
+        if not self._walls:
+            return False
+        a, b = self._ends[: len(self._walls)].transpose(1, 0, 2)
+        step, wall = end_xy - start_xy, b - a
+        walls = np.linalg.norm(wall, axis=1) >= WALL_M
+        denominator = step[0] * wall[:, 1] - step[1] * wall[:, 0]
+        to_a = a - start_xy
+        with np.errstate(divide="ignore", invalid="ignore"):
+            on_line = (to_a[:, 0] * wall[:, 1] - to_a[:, 1] * wall[:, 0]) / denominator
+            on_wall = (to_a[:, 0] * step[1] - to_a[:, 1] * step[0]) / denominator
+        crosses = (on_line > 0) & (on_line < 1) & (on_wall >= 0) & (on_wall <= 1)
+        return bool((crosses & walls).any())
 
     def bounds(self) -> list[Bound]:
         """The walls so far, by place; ids are stable as long as nothing is added."""

@@ -34,12 +34,21 @@ class KnownCells(Protocol):
         ...
 
 
+class Walls(Protocol):
+    """What the bounds so far tell."""
+
+    def part(self, start_xy: NDArray[np.float64], end_xy: NDArray[np.float64]) -> bool:
+        """Whether a wall stands between two points (2,)."""
+        ...
+
+
 def ground(
     hypothesis: Hypothesis,
     anchors: Sequence[ObservedTrack],
     foot_hidden: bool,
     view: View,
     cells: KnownCells,
+    walls: Walls,
 ) -> PredictedTrack | None:
     """The region of a hypothesis, or None where everything about it has been looked at.
 
@@ -48,7 +57,7 @@ def ground(
     no id before it is kept.
     """
     region = (
-        _near(hypothesis, anchors, cells)
+        _near(hypothesis, anchors, cells, walls)
         if hypothesis.relation is Relation.NEAR
         else _under(anchors)
     )
@@ -70,10 +79,16 @@ def ground(
         last_seen=view.stamp,
         categories=dict(hypothesis.categories or {}),
         reach_m=hypothesis.distance_m[0] + 2 * hypothesis.distance_m[1],
+        near_xy=_middle(anchors) if hypothesis.relation is Relation.NEAR else None,
     )
 
 
 Region = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+def _middle(anchors: Sequence[ObservedTrack]) -> NDArray[np.float64]:
+    middle: NDArray[np.float64] = np.concatenate([a.footprint.points() for a in anchors]).mean(0)
+    return middle
 
 
 def _under(anchors: Sequence[ObservedTrack]) -> Region:
@@ -82,27 +97,26 @@ def _under(anchors: Sequence[ObservedTrack]) -> Region:
 
 
 def _near(
-    hypothesis: Hypothesis, anchors: Sequence[ObservedTrack], cells: KnownCells
+    hypothesis: Hypothesis, anchors: Sequence[ObservedTrack], cells: KnownCells, walls: Walls
 ) -> Region | None:
     anchor_points = np.concatenate([a.footprint.points() for a in anchors])
-    anchor = anchor_points.mean(axis=0)
+    anchor = _middle(anchors)
     reach = float(np.linalg.norm(anchor_points - anchor, axis=1).max())
-    angles = np.arange(DIRECTIONS) * 2 * np.pi / DIRECTIONS
-    headings = np.column_stack([np.cos(angles), np.sin(angles)])
-    centers = anchor + hypothesis.distance_m[0] * headings
     half = np.maximum(np.asarray(hypothesis.size_xy_m), 0.2) / 2
     offsets = np.stack(np.meshgrid(*[np.linspace(-h, h, 5) for h in half]), axis=-1).reshape(-1, 2)
     way = np.arange(reach, hypothesis.distance_m[0] + half.max(), WALL_STEP_M)[:, None]
-    shares = [
-        0.0
-        if cells.occupied(anchor + way * heading).any()
-        else float(cells.unknown(center + offsets).mean())
-        for center, heading in zip(centers, headings, strict=True)
-    ]
-    best = int(np.argmax(shares))
-    if shares[best] < 0.5:
+    best: tuple[float, NDArray[np.float64]] = (0.5, anchor)
+    for angle in np.arange(DIRECTIONS) * 2 * np.pi / DIRECTIONS:
+        heading = np.array([np.cos(angle), np.sin(angle)])
+        center = anchor + hypothesis.distance_m[0] * heading
+        unseen = float(cells.unknown(center + offsets).mean())
+        if unseen <= best[0] or cells.occupied(anchor + way * heading).any():
+            continue
+        if not walls.part(anchor, center):
+            best = unseen, center
+    if best[0] <= 0.5:
         return None
-    return centers[best] - half, centers[best] + half
+    return best[1] - half, best[1] + half
 
 
 def _top_range(

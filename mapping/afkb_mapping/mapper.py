@@ -135,7 +135,7 @@ class AffordanceMapper:
             if hypothesis.relation is Relation.BELOW and self._all_stand(anchors):
                 continue
             hidden = not any("support_height" in detections[i].measures for i in hypothesis.anchors)
-            track = ground(hypothesis, anchors, hidden, view, self._grid)
+            track = ground(hypothesis, anchors, hidden, view, self._grid, self._bounds)
             if track is not None and not self._fulfilled(track):
                 expected.append(track)
         return expected
@@ -180,9 +180,14 @@ class AffordanceMapper:
             empty = _is_empty(sight.look(prediction.sample_points()))
             if empty and prediction.empty_from.is_new(eye, prediction.center_xy):
                 prediction.probability = against(prediction.probability, EMPTY_LIKELIHOOD_RATIO)
-            if prediction.probability < GONE_BELOW:
+            if prediction.probability < GONE_BELOW or self._is_walled_off(prediction):
                 self._predictions.remove(prediction)
                 self._refuted += 1
+
+    def _is_walled_off(self, prediction: PredictedTrack) -> bool:
+        """Whether a wall has come to light between a prediction and what it is near to."""
+        near = prediction.near_xy
+        return near is not None and self._bounds.part(near, prediction.center_xy)
 
     def _link(
         self,

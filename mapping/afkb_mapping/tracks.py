@@ -185,7 +185,7 @@ class PredictedTrack:
     """One thing that is expected (V_ap or V_ac), where, how high, and how likely it is.
 
     It covers an upright rectangle `low_xy`..`high_xy` of the floor plane; `top_range_m` are the
-    heights its top may have, m.
+    heights its top may have, m. `near_xy`: what it is expected near to, None for what is below.
     """
 
     id: str
@@ -207,6 +207,7 @@ class PredictedTrack:
     empty_from: Viewpoints = field(default_factory=Viewpoints)
     places: dict[str, None] = field(default_factory=dict)
     reach_m: float = 0.0
+    near_xy: NDArray[np.float64] | None = None
 
     @property
     def center_xy(self) -> NDArray[np.float64]:

@@ -113,3 +113,12 @@ def test_the_order_of_views_does_not_change_the_walls():
     for bound in reversed(found):
         other.add(bound)
     assert abs(len(one.bounds()) - len(other.bounds())) <= 1
+
+
+def test_a_wall_parts_what_lies_on_either_side_and_furniture_does_not():
+    merger = BoundMerger()
+    merger.add_segment(np.array([[0.0, -2.0], [0.0, 2.0]]), "laser-bounds")
+    merger.add_segment(np.array([[3.0, -0.3], [3.0, 0.3]]), "laser-bounds")
+    assert merger.part(np.array([-1.0, 0.0]), np.array([1.0, 0.5]))
+    assert not merger.part(np.array([-1.0, 2.5]), np.array([1.0, 2.5]))
+    assert not merger.part(np.array([2.0, 0.0]), np.array([4.0, 0.0]))
