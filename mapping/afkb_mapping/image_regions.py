@@ -59,7 +59,7 @@ def pixels_by_label(
     starts = np.zeros(len(wanted) + 1, np.int64)
     for r in range(count):
         k = runs[r, 0]
-        starts[k + 1] += _taken(runs[r], thin[k])
+        starts[k + 1] += _count_taken(runs[r], thin[k])
     for k in range(len(wanted)):
         starts[k + 1] += starts[k]
     u, v = np.empty(starts[-1], np.int32), np.empty(starts[-1], np.int32)
@@ -67,7 +67,7 @@ def pixels_by_label(
     for r in range(count):
         k, i, first, last = runs[r]
         n = fill[k]
-        fill[k] += _taken(runs[r], thin[k])
+        fill[k] += _count_taken(runs[r], thin[k])
         if i % thin[k] == 0:
             for j in range((first + thin[k] - 1) // thin[k] * thin[k], last, thin[k]):
                 u[n], v[n] = j, i
@@ -76,11 +76,11 @@ def pixels_by_label(
 
 
 @kernel
-def _taken(run: NDArray[np.int32], thin: int) -> int:
+def _count_taken(run: NDArray[np.int32], thin: int) -> int:
     """How many pixels of a run are taken."""
     if run[1] % thin != 0:
         return 0
-    return (run[3] + thin - 1) // thin - (run[2] + thin - 1) // thin
+    return int((run[3] + thin - 1) // thin - (run[2] + thin - 1) // thin)
 
 
 @kernel

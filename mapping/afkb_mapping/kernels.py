@@ -11,6 +11,9 @@ Loop = TypeVar("Loop", bound=Callable[..., object])
 
 
 def kernel(loop: Loop) -> Loop:
-    """The same function, compiled on its first call and kept on disk; it runs without the GIL."""
-    compiled: Loop = numba.njit(cache=True, nogil=True)(loop)
+    """The same function, compiled on its first call and kept on disk; it runs without the GIL.
+
+    Floats divide as numpy's do: by zero they give inf or nan.
+    """
+    compiled: Loop = numba.njit(cache=True, nogil=True, error_model="numpy")(loop)
     return compiled

@@ -9,6 +9,7 @@ from afkb_containers.supports import RASTER_M, WALL_BIT
 from afkb_mapping.kernels import kernel
 from afkb_mapping.sensor_noise import depth_sigma
 
+CELLS_PER_M = 1.0 / RASTER_M
 ON_WALL = -2
 FLOOR_M = 0.03
 MAX_SLOPE = 0.05
@@ -104,7 +105,7 @@ def _over_raster(
             if depth_m[v, u] <= 0:
                 continue
             x, y = points[v, u, 0] - origin_xy[0], points[v, u, 1] - origin_xy[1]
-            i, j = int(x / RASTER_M), int(y / RASTER_M)
+            i, j = int(x * CELLS_PER_M), int(y * CELLS_PER_M)
             if not (0 <= i < raster.shape[0] and 0 <= j < raster.shape[1]):
                 continue
             over = raster[i, j] & SUPPORT_BITS
@@ -165,7 +166,7 @@ def label_things(
                 out[v, u] = -1
                 continue
             x, y = points[v, u, 0] - origin_xy[0], points[v, u, 1] - origin_xy[1]
-            i, j = int(x / RASTER_M), int(y / RASTER_M)
+            i, j = int(x * CELLS_PER_M), int(y * CELLS_PER_M)
             if not (0 <= i < raster.shape[0] and 0 <= j < raster.shape[1]):
                 continue
             bits = raster[i, j]

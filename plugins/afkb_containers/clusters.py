@@ -13,6 +13,7 @@ from afkb_containers.scene import Scene
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.stand import Stand
 from afkb_mapping.from_above import hull_candidates
+from afkb_mapping.grid_components import AREA, components
 from afkb_mapping.image_regions import Region, order_by_label, pixels_by_label
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
@@ -65,10 +66,8 @@ def clusters_from_above(
     names, enough = _names_from_above(ij, tall, (i1 - i0 + 5, j1 - j0 + 5), least_tall)
     order, starts = order_by_label(_name_each(ij, names), enough)
     for k in np.flatnonzero(np.diff(starts) >= settings.min_pixels):
-        m = order[starts[k] : starts[k + 1]]
-        yield Cluster(
-            u[m], v[m], depths[m], xyz[m], scene.depth_m.shape, Stand.ON_SUPPORT, support_height_m
-        )
+        own = _taken(order[starts[k] : starts[k + 1]], u, v, depths, xyz)
+        yield Cluster(*own, scene.depth_m.shape, Stand.ON_SUPPORT, support_height_m)
 
 
 @kernel
@@ -95,7 +94,7 @@ def _over_support(
         over = overs_m[r, c]
         depths[m], tall[m] = depth_m[r, c], over > core_m
         xyz[m, 0], xyz[m, 1] = points[r, c, 0], points[r, c, 1]
-        xyz[m, 2] = support_height_m + over
+        xyz[m, 2] = np.float32(support_height_m) + over
         i, j = np.int64(np.floor(xyz[m, 0] / cell_m)), np.int64(np.floor(xyz[m, 1] / cell_m))
         ij[m, 0], ij[m, 1] = i, j
         if tall[m]:
@@ -104,13 +103,34 @@ def _over_support(
 
 
 @kernel
+def _taken(
+    index: NDArray[np.int64],
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
+    depths: NDArray[np.float32],
+    xyz: NDArray[np.float64],
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32], NDArray[np.float64]]:
+    """The pixels that have these indexes."""
+    n = len(index)
+    us, vs = np.empty(n, np.int32), np.empty(n, np.int32)
+    zs, points = np.empty(n, np.float32), np.empty((n, 3))
+    for m in range(n):
+        k = index[m]
+        us[m], vs[m], zs[m] = u[k], v[k], depths[k]
+        points[m, 0], points[m, 1], points[m, 2] = xyz[k, 0], xyz[k, 1], xyz[k, 2]
+    return us, vs, zs, points
+
+
+@kernel
 def _grid_of(
     ij: NDArray[np.int64], tall: NDArray[np.bool_], shape: tuple[int, int]
 ) -> NDArray[np.uint8]:
+    """Squares (X, Y) that hold tall points, each marked together with the next ones."""
     grid = np.zeros(shape, np.uint8)
     for n in range(len(ij)):
         if tall[n]:
-            grid[ij[n, 0], ij[n, 1]] = 1
+            i, j = ij[n, 0], ij[n, 1]
+            grid[i, j] = grid[i, j + 1] = grid[i + 1, j] = grid[i + 1, j + 1] = 1
     return grid
 
 
@@ -125,6 +145,18 @@ def _name_each(ij: NDArray[np.int64], names: NDArray[np.int32]) -> NDArray[np.in
     return of
 
 
+@kernel
+def _tall_in_each(
+    ij: NDArray[np.int64], tall: NDArray[np.bool_], parts: NDArray[np.int32], count: int
+) -> NDArray[np.int64]:
+    """Number of tall points in each part of a grid."""
+    numbers = np.zeros(count, np.int64)
+    for n in range(len(ij)):
+        if tall[n]:
+            numbers[parts[ij[n, 0], ij[n, 1]]] += 1
+    return numbers
+
+
 def _names_from_above(
     ij: NDArray[np.int64], tall: NDArray[np.bool_], shape: tuple[int, int], least_tall: int
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
@@ -133,11 +165,11 @@ def _names_from_above(
     And which groups hold enough tall points. A larger group's hull goes before a smaller one's,
     a group's own squares before any hull.
     """
-    grid = cv2.dilate(_grid_of(ij, tall, shape), np.ones((2, 2), np.uint8))
-    count, parts, stats, _ = cv2.connectedComponentsWithStats(grid, connectivity=8)
-    enough = np.bincount(_name_each(ij, parts)[tall], minlength=count) >= least_tall
+    parts, measures = components(_grid_of(ij, tall, shape), True)
+    count = len(measures)
+    enough = _tall_in_each(ij, tall, parts, count) >= least_tall
     enough[0] = False
-    by_area = sorted(range(1, count), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))
+    by_area = sorted(range(1, count), key=lambda k: -int(measures[k, AREA]))
     while by_area and not enough[by_area[-1]]:
         by_area.pop()
     wanted = np.zeros(count, np.bool_)
@@ -146,7 +178,7 @@ def _names_from_above(
     names = np.zeros(shape, np.int32)
     for k in by_area:
         own = slice(int(starts[k]), int(starts[k + 1]))
-        _fill_hull(names, columns[own], rows[own], k, stats[k])
+        _fill_hull(names, columns[own], rows[own], k, measures[k])
     np.copyto(names, parts, where=parts > 0)
     return names, enough
 
@@ -156,64 +188,12 @@ def _fill_hull(
     columns: NDArray[np.int32],
     rows: NDArray[np.int32],
     k: int,
-    stats: NDArray[np.int32],
+    measures: NDArray[np.int32],
 ) -> None:
     """Give the squares within a group's hull that have no name yet the name k."""
-    x, y, w, h = (int(n) for n in stats[:4])
+    x, y, w, h = (int(n) for n in measures[:4])
     corners = hull_candidates(np.column_stack([columns - x, rows - y])).astype(np.int32)
     filled = np.zeros((h, w), np.uint8)
     cv2.fillConvexPoly(filled, cv2.convexHull(corners), 1)
     part = names[y : y + h, x : x + w]
     part[(filled > 0) & (part == 0)] = k
-
-
-@kernel
-def surroundings(
-    u: NDArray[np.int32],
-    v: NDArray[np.int32],
-    depth_m: NDArray[np.float32],
-    mine: NDArray[np.int32],
-    name: int,
-    labels: NDArray[np.int16],
-    overs_m: NDArray[np.float32],
-    core_m: float,
-) -> tuple[float, float, float, float]:
-    """What a thing's outline borders on: shares of attached, behind it, before it, missing.
-
-    Attached: the surface goes on, off the support, so that this is a part of something larger.
-    What rises less than core_m over the support (overs_m) is its foot, or a cloth below it.
-    `mine` (H, W) holds `name` at the thing's pixels; `labels` (H, W) is negative on supports.
-    """
-    rows, cols = depth_m.shape
-    attached = behind = before = missing = total = 0
-    for k in range(len(u)):
-        z = depth_m[v[k], u[k]]
-        jump = 0.015 + 3.0 * depth_sigma(z)
-        for du, dv in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-            i, j = v[k] + dv, u[k] + du
-            if 0 <= i < rows and 0 <= j < cols and mine[i, j] == name:
-                continue
-            # speckle: look a little further for the next pixel that returned
-            reach = 1
-            while 0 <= i < rows and 0 <= j < cols and depth_m[i, j] <= 0 and reach < 4:
-                i, j, reach = i + dv, j + du, reach + 1
-            if not (0 <= i < rows and 0 <= j < cols):
-                total += 1
-                missing += 1
-                continue
-            if mine[i, j] == name:
-                continue
-            total += 1
-            other = depth_m[i, j]
-            if other <= 0:
-                missing += 1
-            elif other > z + jump:
-                behind += 1
-            elif other < z - jump:
-                before += 1
-            elif labels[i, j] == 0 or (labels[i, j] > 0 and overs_m[i, j] > core_m):
-                attached += 1
-            else:
-                behind += 1
-    total = max(total, 1)
-    return attached / total, behind / total, before / total, missing / total

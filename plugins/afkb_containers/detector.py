@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
-from afkb_containers.clusters import Cluster, clusters_from_above, surroundings
+from afkb_containers.clusters import Cluster, clusters_from_above
 from afkb_containers.concavity import find_opening
 from afkb_containers.hidden import Loose, things_on_hidden_supports, things_on_the_floor
 from afkb_containers.judge import LEAST_CLAIM, container_detection, judge
@@ -18,6 +18,7 @@ from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import sides_from_above, solid_of
 from afkb_containers.stand import Stand
 from afkb_containers.sunk import sunk_containers
+from afkb_containers.surroundings import surroundings
 from afkb_mapping.image_regions import pixels_by_label
 from afkb_mapping.trapezoids import membership
 
@@ -73,7 +74,6 @@ class ContainerDetector:
         size = membership(length, s.sides_m(cluster.stand))
         if size <= 0:
             return None
-        mine[cluster.v, cluster.u] = name
         attached, *_ = surroundings(
             cluster.u, cluster.v, scene.depth_m, mine, name, scene.labels, scene.overs_m, s.core_m
         )

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,9 +12,10 @@ from afkb_containers.above import FLOOR_M
 from afkb_containers.clusters import Cluster
 from afkb_containers.scene import Scene
 from afkb_containers.stand import Stand
+from afkb_mapping.grid_components import HEIGHT, WIDTH, components
 from afkb_mapping.image_regions import extent, order_by_label
 from afkb_mapping.kernels import kernel
-from afkb_mapping.order_statistics import percentiles
+from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
 
 NEAREST_FLOOR_M = 0.25
@@ -81,7 +81,10 @@ def _loose(
 def _grid_between(
     heights_m: NDArray[np.float32], ij: NDArray[np.int32], low_m: float, high_m: float
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.uint8]]:
-    """Indexes of what lies between two heights, the square of each (flat), and their grid."""
+    """Indexes of what lies between two heights, the square of each (flat), and their grid.
+
+    On the grid a square is marked together with the next ones, so that small gaps close.
+    """
     index, n = np.empty(len(heights_m), np.int64), 0
     i0 = j0 = np.int64(1 << 30)
     i1 = j1 = np.int64(-1)
@@ -99,7 +102,7 @@ def _grid_between(
     square = np.empty(n, np.int64)
     for m in range(n):
         i, j = ij[index[m], 0] - i0, ij[index[m], 1] - j0
-        grid[i, j] = 1
+        grid[i, j] = grid[i, j + 1] = grid[i + 1, j] = grid[i + 1, j + 1] = 1
         square[m] = i * grid.shape[1] + j
     return index[:n], square, grid
 
@@ -129,39 +132,57 @@ def _hidden_below(
 
 def things_on_hidden_supports(scene: Scene, loose: Loose, min_pixels: int) -> Iterator[Cluster]:
     """Compact bodies that stand apart, seen from above, and whose foot something nearer covers."""
-    for u, v in _apart_from_above(loose, NEAREST_FLOOR_M, HIGHEST_M, min_pixels):
-        depths, xyz = scene.at(u, v)
-        low, high = percentiles(xyz[:, 2], 0.0, 100.0)
+    for u, v, heights in _apart_from_above(loose, NEAREST_FLOOR_M, HIGHEST_M, min_pixels):
         u0, _, u1, _ = extent(u, v)
-        if high - low > TALLEST_M or _hidden_below(u, v, scene.depth_m, u0, u1) < HIDDEN_SHARE:
+        if np.ptp(heights) > TALLEST_M or _hidden_below(u, v, scene.depth_m, u0, u1) < HIDDEN_SHARE:
             continue
-        yield Cluster(u, v, depths, xyz, scene.depth_m.shape, Stand.HIDDEN, None)
+        yield Cluster(u, v, *scene.at(u, v), scene.depth_m.shape, Stand.HIDDEN, None)
 
 
 def things_on_the_floor(scene: Scene, loose: Loose, min_pixels: int) -> Iterator[Cluster]:
     """Compact bodies that stand apart on the floor, as bins and baskets do."""
-    for u, v in _apart_from_above(loose, FLOOR_M, BIN_M[1] + 0.1, min_pixels):
-        depths, xyz = scene.at(u, v)
-        _, top = percentiles(xyz[:, 2], 0.0, 98.0)
-        if BIN_M[0] < top < BIN_M[1]:
-            yield Cluster(u, v, depths, xyz, scene.depth_m.shape, Stand.ON_FLOOR, 0.0)
+    for u, v, heights in _apart_from_above(loose, FLOOR_M, BIN_M[1] + 0.1, min_pixels):
+        if BIN_M[0] < percentile(heights, 98.0) < BIN_M[1]:
+            yield Cluster(u, v, *scene.at(u, v), scene.depth_m.shape, Stand.ON_FLOOR, 0.0)
 
 
 def _apart_from_above(
     loose: Loose, low_m: float, high_m: float, min_pixels: int
-) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int32]]]:
-    """Pixels (u, v) of what is narrow enough and alone, seen from above."""
+) -> Iterator[tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32]]]:
+    """Pixels (u, v) and heights of what is narrow enough and alone, seen from above."""
     index, square, grid = _grid_between(loose.heights_m, loose.ij, low_m, high_m)
     if len(index) < min_pixels:
         return
-    count, parts, stats, _ = cv2.connectedComponentsWithStats(
-        cv2.dilate(grid, np.ones((2, 2), np.uint8)), connectivity=8
-    )
-    wide = np.maximum(stats[:, cv2.CC_STAT_WIDTH], stats[:, cv2.CC_STAT_HEIGHT]) * CELL_M
-    of = parts.ravel()[square]
-    narrow = (wide <= WIDEST_M) & (np.bincount(of, minlength=count) >= min_pixels)
+    parts, measures = components(grid, True)
+    wide = np.maximum(measures[:, WIDTH], measures[:, HEIGHT]) * CELL_M
+    narrow = wide <= WIDEST_M
     narrow[0] = False
-    order, starts = order_by_label(of, narrow)
-    for k in np.flatnonzero(narrow):
-        member = index[order[starts[k] : starts[k + 1]]]
-        yield loose.u[member], loose.v[member]
+    u, v, heights, starts = _by_part(
+        loose.u, loose.v, loose.heights_m, index, square, parts.ravel(), narrow
+    )
+    for k in np.flatnonzero(np.diff(starts) >= min_pixels):
+        part = slice(int(starts[k]), int(starts[k + 1]))
+        yield u[part], v[part], heights[part]
+
+
+@kernel
+def _by_part(
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
+    heights_m: NDArray[np.float32],
+    index: NDArray[np.int64],
+    square: NDArray[np.int64],
+    parts: NDArray[np.int32],
+    wanted: NDArray[np.bool_],
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32], NDArray[np.int64]]:
+    """Pixels and heights of the wanted parts, part by part, and where each begins.
+
+    `parts` (X * Y,) is a grid, and `square` (N,) says where each of the pixels `index` lies on it.
+    """
+    order, starts = order_by_label(parts[square], wanted)
+    us, vs = np.empty(len(order), np.int32), np.empty(len(order), np.int32)
+    heights = np.empty(len(order), np.float32)
+    for n in range(len(order)):
+        k = index[order[n]]
+        us[n], vs[n], heights[n] = u[k], v[k], heights_m[k]
+    return us, vs, heights, starts

@@ -14,6 +14,7 @@ from afkb_containers.judge import LEAST_CLAIM
 from afkb_containers.scene import Scene
 from afkb_containers.settings import ContainerSettings
 from afkb_mapping.from_above import box_around, hull_candidates
+from afkb_mapping.grid_components import AREA, components
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
@@ -102,9 +103,9 @@ def _in_support(
     box = support.image_box or (0, 0, cols, rows)
     deepest = _holes(scene.depth_m, scene.points, scene.camera_xyz, height_m, hull, origin, box)
     open_ = cv2.morphologyEx((deepest > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3)))
-    count, parts, stats, _ = cv2.connectedComponentsWithStats(open_, connectivity=4)
-    for k in range(1, count):
-        if stats[k, cv2.CC_STAT_AREA] * CELL_M**2 < LEAST_AREA_M2:
+    parts, measures = components(open_, False)
+    for k in range(1, len(measures)):
+        if measures[k, AREA] * CELL_M**2 < LEAST_AREA_M2:
             continue
         hole = parts == k
         if percentile(deepest[hole], 95.0) < LEAST_DEPTH_M:

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from afkb_mapping.from_above import box_around, hull_candidates, on_grid
-from afkb_mapping.image_regions import Region, pixels_by_label
+from afkb_mapping.grid_components import components
+from afkb_mapping.image_regions import Region, order_by_label, pixels_by_label
 from afkb_mapping.order_statistics import percentile, percentiles
 
 NUMBERS = st.floats(-50, 50, width=32)
@@ -75,3 +76,23 @@ def test_a_region_knows_its_box_and_whether_the_image_cuts_it() -> None:
     assert region.image_box == (5, 4, 10, 7)
     assert not region.cut_by_image
     assert Region(u, v, region.depth_m, region.points, (20, 11)).cut_by_image
+
+
+@pytest.mark.parametrize("diagonal", [True, False])
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.7])
+def test_groups_of_squares_are_opencvs(share: float, diagonal: bool) -> None:
+    grid = (np.random.default_rng(6).random((41, 60)) < share).astype(np.uint8)
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(
+        grid, connectivity=8 if diagonal else 4
+    )
+    found, measures = components(grid, diagonal)
+    assert found.tolist() == labels.tolist()
+    assert len(measures) == count
+    assert measures[1:].tolist() == stats[1:].tolist()
+
+
+def test_entries_come_label_by_label() -> None:
+    labels = np.array([2, 0, 1, 2, 1, 0], np.int32)
+    order, starts = order_by_label(labels, np.array([False, True, True]))
+    assert order.tolist() == [2, 4, 0, 3]
+    assert starts.tolist() == [0, 0, 2, 4]

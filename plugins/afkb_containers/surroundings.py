@@ -1,0 +1,63 @@
+"""What the outline of a thing borders on in the image."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb_mapping.kernels import kernel
+from afkb_mapping.sensor_noise import depth_sigma
+
+
+@kernel
+def surroundings(
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
+    depth_m: NDArray[np.float32],
+    mine: NDArray[np.int32],
+    name: int,
+    labels: NDArray[np.int16],
+    overs_m: NDArray[np.float32],
+    core_m: float,
+) -> tuple[float, float, float, float]:
+    """What a thing's outline borders on: shares of attached, behind it, before it, missing.
+
+    Attached: the surface goes on, off the support, so that this is a part of something larger.
+    What rises less than core_m over the support (overs_m) is its foot, or a cloth below it.
+    `mine` (H, W) gets `name` at the thing's pixels; `labels` (H, W) is negative on supports.
+    """
+    rows, cols = depth_m.shape
+    for k in range(len(u)):
+        mine[v[k], u[k]] = name
+    attached = behind = before = missing = total = 0
+    for k in range(len(u)):
+        z = depth_m[v[k], u[k]]
+        jump = 0.015 + 3.0 * depth_sigma(z)
+        for du, dv in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+            i, j = v[k] + dv, u[k] + du
+            if 0 <= i < rows and 0 <= j < cols and mine[i, j] == name:
+                continue
+            # speckle: look a little further for the next pixel that returned
+            reach = 1
+            while 0 <= i < rows and 0 <= j < cols and depth_m[i, j] <= 0 and reach < 4:
+                i, j, reach = i + dv, j + du, reach + 1
+            if not (0 <= i < rows and 0 <= j < cols):
+                total += 1
+                missing += 1
+                continue
+            if mine[i, j] == name:
+                continue
+            total += 1
+            other = depth_m[i, j]
+            if other <= 0:
+                missing += 1
+            elif other > z + jump:
+                behind += 1
+            elif other < z - jump:
+                before += 1
+            elif labels[i, j] == 0 or (labels[i, j] > 0 and overs_m[i, j] > core_m):
+                attached += 1
+            else:
+                behind += 1
+    total = max(total, 1)
+    return attached / total, behind / total, before / total, missing / total
