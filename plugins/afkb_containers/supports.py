@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import Detection
 from afkb_mapping.from_above import hull_candidates
+from afkb_mapping.kernels import kernel
 
 RASTER_M = 0.02
 HULL_MARGIN_CELLS = 1
@@ -50,9 +51,8 @@ class Supports:
         heights = np.array([float(d.position_xyz[2]) for d in chosen])
         areas = np.array([d.measures.get("area", 0.0) for d in chosen])
         raster, origin = _raster(chosen, earlier)
-        for d in earlier:
-            if d.segment_xy is not None and _is_wall(d):
-                _mark_wall(raster, origin, d.segment_xy)
+        walls = [d.segment_xy for d in earlier if d.segment_xy is not None and _is_wall(d)]
+        _mark_walls(raster, origin, walls)
         return cls(tuple(chosen), heights, areas >= LARGE_SUPPORT_M2, raster, origin)
 
 
@@ -68,7 +68,7 @@ def _raster(
     far = np.max([xy.max(axis=0) for xy in reach], axis=0) + pad
     shape = np.ceil((far - origin) / RASTER_M).astype(int) + 1
     raster = np.zeros((int(shape[0]), int(shape[1])), np.uint64)
-    kernel = np.ones((2 * HULL_MARGIN_CELLS + 1,) * 2, np.uint8)
+    margin = np.ones((2 * HULL_MARGIN_CELLS + 1,) * 2, np.uint8)
     for k, d in enumerate(chosen):
         ij = np.floor((d.footprint_xy - origin) / RASTER_M).astype(np.int32)
         low = ij.min(axis=0) - HULL_MARGIN_CELLS
@@ -76,10 +76,8 @@ def _raster(
         mask = np.zeros((int(size[0]), int(size[1])), np.uint8)
         hull = cv2.convexHull(hull_candidates((ij - low)[:, ::-1]).astype(np.int32))
         cv2.fillConvexPoly(mask, hull, 1)
-        mask = cv2.dilate(mask, kernel)
-        raster[low[0] : low[0] + size[0], low[1] : low[1] + size[1]] |= mask.astype(
-            np.uint64
-        ) << np.uint64(k)
+        mask = cv2.dilate(mask, margin)
+        _set_bit(raster[low[0] : low[0] + size[0], low[1] : low[1] + size[1]], mask, np.uint64(k))
     return raster, origin
 
 
@@ -90,11 +88,22 @@ def _is_wall(bound: Detection) -> bool:
     return large and bound.measures.get("rms", 0.0) < WALL_RMS_M
 
 
-def _mark_wall(
-    raster: NDArray[np.uint64], origin: NDArray[np.float64], segment_xy: NDArray[np.float64]
+def _mark_walls(
+    raster: NDArray[np.uint64],
+    origin: NDArray[np.float64],
+    segments_xy: Sequence[NDArray[np.float64]],
 ) -> None:
-    """Set the wall bit where an upright plane stands, so that it isn't a thing on a support."""
+    """Set the wall bit where upright planes stand, so that they aren't things on a support."""
     mask = np.zeros(raster.shape, np.uint8)
-    ends = np.floor((segment_xy - origin) / RASTER_M).astype(int)[:, ::-1]
-    cv2.line(mask, tuple(ends[0].tolist()), tuple(ends[1].tolist()), 1, WALL_CELLS)
-    raster |= mask.astype(np.uint64) << WALL_BIT
+    for segment in segments_xy:
+        ends = np.floor((segment - origin) / RASTER_M).astype(int)[:, ::-1]
+        cv2.line(mask, tuple(ends[0].tolist()), tuple(ends[1].tolist()), 1, WALL_CELLS)
+    _set_bit(raster, mask, WALL_BIT)
+
+
+@kernel
+def _set_bit(raster: NDArray[np.uint64], mask: NDArray[np.uint8], bit: np.uint64) -> None:
+    """Set a bit wherever the mask is 1."""
+    for i in range(raster.shape[0]):
+        for j in range(raster.shape[1]):
+            raster[i, j] |= np.uint64(mask[i, j]) << bit
