@@ -53,19 +53,22 @@ def squares_of(
     return (i0, j0), (i1 - i0 + 1, j1 - j0 + 1), ij
 
 
-@kernel
-def hull_candidates(xy: NDArray[np.floating]) -> NDArray[np.float32]:
+def hull_candidates(xy: NDArray[np.floating | np.integer]) -> NDArray[np.float32]:
     """Those of the points (N, 2+) that may be corners of their convex hull: (M, 2), M <= N.
 
     Whatever lies within the octagon of the points that reach farthest in eight directions can't
     be one (Akl and Toussaint, 1978); that leaves few to sort.
     """
-    n = len(xy)
+    return _outside_octagon(np.array(xy[:, :2], np.float32, order="C"))
+
+
+@kernel
+def _outside_octagon(p: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Points (N, 2) that don't lie within the octagon of the farthest; overwrites `p`."""
+    n = len(p)
     corner = np.zeros(8, np.int64)
     farthest = np.full(8, -np.inf)
-    p = np.empty((n, 2), np.float32)
     for i in range(n):
-        p[i, 0], p[i, 1] = xy[i, 0], xy[i, 1]
         x, y = float(p[i, 0]), float(p[i, 1])
         reach = (x, x + y, y, y - x, -x, -x - y, -y, x - y)
         for k in range(8):
@@ -94,7 +97,7 @@ def hull_candidates(xy: NDArray[np.floating]) -> NDArray[np.float32]:
 
 
 def smallest_rectangle(
-    xy: NDArray[np.floating],
+    xy: NDArray[np.floating | np.integer],
 ) -> tuple[tuple[float, float], tuple[float, float], float]:
     """Centre, sides and turn (degrees) of the smallest rectangle around points (N, 2+), N > 0."""
     (x, y), (length, width), degrees = cv2.minAreaRect(hull_candidates(xy))
