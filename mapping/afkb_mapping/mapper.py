@@ -198,7 +198,7 @@ class AffordanceMapper:
     ) -> None:
         """Grow G_t: the place of this view, and what is linked to it."""
         in_view = {t.id: None for t in observed if t is not None and not t.is_floor}
-        place = self._places.visit(view, in_view, self._grid.in_sight)
+        place = self._places.visit(view, in_view, self._grid)
         for track in observed:
             if track is not None:
                 track.places[place.id] = None

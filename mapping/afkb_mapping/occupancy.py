@@ -25,6 +25,8 @@ LOG_ODDS_LIMIT = 3.5
 """Clamp (probability 0.03 to 0.97), so that what is moved away is gone after some ten looks."""
 MAX_FREE_RANGE_M = 15.0
 """Beams clear cells up to here: further off, the angle between beams leaves gaps anyway."""
+HALF_DOORWAY_M = 0.55
+"""Half the width of a wide single door with its frame, and room to stand before it."""
 MOST_CELLS = 40_000_000
 """What fits into the memory that a run may take: 500 m x 200 m at 5 cm."""
 MARGIN_M = 5.0
@@ -157,6 +159,29 @@ class GridBuilder:
         steps = max(2, math.ceil(float(np.linalg.norm(end_xy - start)) / self._resolution))
         line = start + np.linspace(0, 1, steps)[:, None] * (end_xy - start)
         return not self.occupied(line).any()
+
+    def doorway_between(self, start_xy: tuple[float, float], end_xy: Points) -> bool:
+        """Whether the straight line between two points (m) squeezes through a passage.
+
+        Something stands within `HALF_DOORWAY_M` on either side of it. Not counted is what is that
+        near to its ends: who stands in a doorway has not passed it.
+        """
+        start = np.asarray(start_xy, dtype=np.float64)
+        length = float(np.linalg.norm(end_xy - start))
+        if length <= 2 * HALF_DOORWAY_M:
+            return False
+        along = (end_xy - start) / length
+        left = np.array([-along[1], along[0]])
+        way = np.arange(HALF_DOORWAY_M, length - HALF_DOORWAY_M, self._resolution)
+        aside = np.arange(self._resolution, HALF_DOORWAY_M, self._resolution)
+        line = start + way[:, None] * along
+        sides = [
+            self.occupied((line[:, None] + sign * aside[:, None] * left).reshape(-1, 2))
+            .reshape(len(way), len(aside))
+            .any(axis=1)
+            for sign in (1.0, -1.0)
+        ]
+        return bool((sides[0] & sides[1]).any())
 
     def _at(self, points_xy: Points, cells_where: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """(N,) value of a mask at points, False outside it."""

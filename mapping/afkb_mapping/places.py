@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from afkb.flow import View
 from afkb_mapping.geometry import yaw_of
 
-PLACE_SPACING_M = 1.5
+PLACE_SPACING_M = 2.0
 """A robot that turns on the spot, or moves less than this, stays at its place."""
 FAMILIAR_SHARE = 0.5
 """A view belongs to a place from which at least this share of its entities was already seen."""
@@ -21,7 +22,16 @@ SAME_PLACE_M = 2.5
 """Beyond this distance a view belongs to no earlier place, however much of it is familiar."""
 
 
-InSight = Callable[[tuple[float, float], NDArray[np.float64]], bool]
+class Surroundings(Protocol):
+    """What the grid so far tells of the straight line between two points, m."""
+
+    def in_sight(self, start_xy: tuple[float, float], end_xy: NDArray[np.float64]) -> bool:
+        """Whether nothing stands on it."""
+        ...
+
+    def doorway_between(self, start_xy: tuple[float, float], end_xy: NDArray[np.float64]) -> bool:
+        """Whether it squeezes through a passage."""
+        ...
 
 
 @dataclass(slots=True, eq=False)
@@ -46,15 +56,14 @@ class Places:
         self.current: Place | None = None
         self._new_id = new_id
 
-    def visit(self, view: View, entities: Collection[str], in_sight: InSight) -> Place:
+    def visit(self, view: View, entities: Collection[str], grid: Surroundings) -> Place:
         """The place of a view in which these entities are: an earlier one, or a new one.
 
-        `in_sight` tells whether nothing stands between two points (m): a place holds only what can
-        be reached from it straight on.
+        A place holds only what can be reached from it straight on, and through no doorway.
         """
         assert view.T_map_base is not None
         xy = view.T_map_base[:2, 3]
-        place = self._belongs_to(xy, set(entities), in_sight) or self._new_place(view)
+        place = self._belongs_to(xy, set(entities), grid) or self._new_place(view)
         if self.current is not None and self.current is not place:
             self.ways[(self.current.id, place.id)] = None
         self.current = place
@@ -62,13 +71,16 @@ class Places:
         return place
 
     def _belongs_to(
-        self, xy: NDArray[np.float64], entities: set[str], in_sight: InSight
+        self, xy: NDArray[np.float64], entities: set[str], grid: Surroundings
     ) -> Place | None:
         near = sorted((float(np.hypot(p.x - xy[0], p.y - xy[1])), p.id, p) for p in self.places)
-        if near and near[0][0] < PLACE_SPACING_M:
-            return near[0][2]
         for distance, _, place in near:
-            if distance > FAR_PLACE_M or not in_sight((place.x, place.y), xy):
+            if distance < PLACE_SPACING_M and not grid.doorway_between((place.x, place.y), xy):
+                return place
+        for distance, _, place in near:
+            if distance > FAR_PLACE_M or not grid.in_sight((place.x, place.y), xy):
+                continue
+            if grid.doorway_between((place.x, place.y), xy):
                 continue
             if not entities and place is self.current:
                 return place

@@ -44,7 +44,7 @@ class ObservedOnlyMapper:
             self._looked_from.append(view.T_map_base[:2, 3])
         seen = [t for t in self._association.match(view, detections) if t is not None]
         in_view = {t.id: None for t in seen if not t.is_floor}
-        place = self._places.visit(view, in_view, self._grid.in_sight)
+        place = self._places.visit(view, in_view, self._grid)
         for track in seen:
             track.places[place.id] = None
         for detection in detections:

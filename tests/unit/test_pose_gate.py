@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mapping_samples import view
 
 from afkb.errors import BadFrame
 from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_mapping.pose_gate import PoseGate
+from mapping_samples import view
 
 
 def at(x, index):
