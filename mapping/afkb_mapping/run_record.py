@@ -106,5 +106,14 @@ def _version_of(package: str) -> str | None:
 
 
 def _peak_memory_mb() -> float:
+    """Greatest resident memory of this process.
+
+    Linux tells it per program in /proc; getrusage would add what the parent had at the fork.
+    """
+    status = Path("/proc/self/status")
+    if status.is_file():
+        for line in status.read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) / 1024
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / 1024 if sys.platform != "darwin" else peak / 1024**2
