@@ -68,10 +68,10 @@ def _observed(
     size = (*outline.size_xy, top - bottom)
     z = top if track.is_surface else (top + bottom) / 2
     affordances = track.affordances
-    belief = (
-        {"Floor": 1.0} if track.is_floor else network.category_posterior(affordances, size, top)
-    )
-    movability, weight = ("Static", 1.0) if track.is_floor else network.movability(belief)
+    belief, movability, weight = {"Floor": 1.0}, "Static", 1.0
+    if not track.is_floor:
+        belief = network.category_posterior(network.known(affordances), size, top)
+        movability, weight = network.movability(belief)
     return Entity(
         id=track.id,
         kind=NodeKind.OBSERVED,
