@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from afkb.flow import Closure, Detection, Hypothesis, Relation, TopologicalMap, View
 from afkb.inference import Network
-from afkb.knowledge import KnowledgeBase
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
 from afkb_mapping.entities import is_kept
@@ -37,8 +36,7 @@ GONE_BELOW = 0.2
 class AffordanceMapper:
     """Builds G(V_r ∪ V_ao ∪ V_ap ∪ V_ac, E_d ∪ E_l) in an occupancy grid (paper §II.E)."""
 
-    def __init__(self, knowledge_base: KnowledgeBase, network: Network, rule: str) -> None:
-        self._knowledge_base = knowledge_base
+    def __init__(self, network: Network, rule: str) -> None:
         self._network = network
         self._rule = update_rule(rule)
         self._new_id = Ids()
@@ -68,7 +66,6 @@ class AffordanceMapper:
         """The map of what was added so far."""
         self._association.merge_doubles()
         content = MapContent(
-            knowledge_base=self._knowledge_base,
             network=self._network,
             tracks=self._association.tracks,
             predictions=self._predictions,
@@ -231,7 +228,7 @@ def _is_overlooked(track: ObservedTrack, found: Look, eye: NDArray[np.float64]) 
 def _body(track: ObservedTrack, sight: Sight) -> NDArray[np.float64]:
     """Points (N, 3) that a look at a thing meets first: its top, or its body at half height.
 
-    None where the thing is out of sight anyway.
+    Empty where the thing is out of sight anyway.
     """
     xy = track.footprint.points()
     z = track.top.value if track.is_surface else (track.top.value + track.bottom.value) / 2

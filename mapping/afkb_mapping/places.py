@@ -75,12 +75,12 @@ class Places:
     ) -> Place | None:
         near = sorted((float(np.hypot(p.x - xy[0], p.y - xy[1])), p.id, p) for p in self.places)
         for distance, _, place in near:
-            if distance < PLACE_SPACING_M and not grid.doorway_between((place.x, place.y), xy):
-                return place
-        for distance, _, place in near:
-            if distance > FAR_PLACE_M or not grid.in_sight((place.x, place.y), xy):
+            at = (place.x, place.y)
+            if distance > FAR_PLACE_M or grid.doorway_between(at, xy):
                 continue
-            if grid.doorway_between((place.x, place.y), xy):
+            if distance < PLACE_SPACING_M:
+                return place
+            if not grid.in_sight(at, xy):
                 continue
             if not entities and place is self.current:
                 return place

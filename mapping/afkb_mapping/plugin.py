@@ -27,7 +27,7 @@ class AffordanceMapperFactory:
         from afkb.inference import network_of
         from afkb_mapping.mapper import AffordanceMapper
 
-        return AffordanceMapper(self.knowledge_base, network_of(self.knowledge_base), rule)
+        return AffordanceMapper(network_of(self.knowledge_base), rule)
 
 
 @hookimpl

@@ -21,7 +21,6 @@ from afkb.flow import (
     TopologicalMap,
 )
 from afkb.inference import Network
-from afkb.knowledge import KnowledgeBase
 from afkb_mapping.edges import edges_of
 from afkb_mapping.entities import observed_entities, predicted_entities, supports_expected
 from afkb_mapping.occupancy import rasterise
@@ -44,7 +43,6 @@ class MapContent:
     base stood when depth was taken.
     """
 
-    knowledge_base: KnowledgeBase
     network: Network
     tracks: Sequence[ObservedTrack]
     predictions: Sequence[PredictedTrack]

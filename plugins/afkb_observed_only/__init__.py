@@ -25,7 +25,7 @@ class ObservedOnlyFactory:
         from afkb.inference import network_of
         from afkb_observed_only.mapper import ObservedOnlyMapper
 
-        return ObservedOnlyMapper(self.knowledge_base, network_of(self.knowledge_base))
+        return ObservedOnlyMapper(network_of(self.knowledge_base))
 
 
 @hookimpl

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from afkb.flow import Detection, Hypothesis, TopologicalMap, View
 from afkb.inference import Network
-from afkb.knowledge import KnowledgeBase
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
 from afkb_mapping.grid_input import insert_view
@@ -22,8 +21,7 @@ from afkb_mapping.snapshot import MapContent, snapshot
 class ObservedOnlyMapper:
     """Places, observed things and bounds; hypotheses are left aside, nothing ever vanishes."""
 
-    def __init__(self, knowledge_base: KnowledgeBase, network: Network) -> None:
-        self._knowledge_base = knowledge_base
+    def __init__(self, network: Network) -> None:
         self._network = network
         new_id = Ids()
         self._association = Association(new_id)
@@ -54,7 +52,6 @@ class ObservedOnlyMapper:
     def finish(self, T_map_source: NDArray[np.float64]) -> TopologicalMap:
         """The map of what was added so far."""
         content = MapContent(
-            knowledge_base=self._knowledge_base,
             network=self._network,
             tracks=self._association.tracks,
             predictions=(),

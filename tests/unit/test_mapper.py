@@ -17,7 +17,7 @@ def knowledge_base():
 
 @pytest.fixture
 def mapper(knowledge_base):
-    return AffordanceMapper(knowledge_base, network_of(knowledge_base), "log-odds")
+    return AffordanceMapper(network_of(knowledge_base), "log-odds")
 
 
 def of_kind(found, kind):
@@ -158,7 +158,7 @@ def test_turning_on_the_spot_is_one_place_and_new_affordances_elsewhere_another(
 
 def test_the_same_input_gives_the_same_map(knowledge_base):
     def made():
-        mapper = AffordanceMapper(knowledge_base, network_of(knowledge_base), "noisy-or")
+        mapper = AffordanceMapper(network_of(knowledge_base), "noisy-or")
         for i in range(4):
             cups = [container(2.0, 0.0), container(2.2, 0.3)]
             mapper.add(view(i, y=0.4 * i), [*cups, support(2.1, 0.1)], [support_below(0, 1)])
