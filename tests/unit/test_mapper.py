@@ -1,5 +1,7 @@
 """Algorithm 1, line by line, on hand-made views."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -154,6 +156,14 @@ def test_turning_on_the_spot_is_one_place_and_new_affordances_elsewhere_another(
     assert len(found.places) == 2
     (way,) = [e for e in found.edges if e.kind is EdgeKind.PATH]
     assert way.distance == pytest.approx(4.0)
+
+
+def test_an_affordance_that_the_ontology_lacks_is_kept_in_the_map(mapper):
+    lamp = replace(container(2.0, 0.0), affordances={"GlowAbility": 0.9})
+    mapper.add(view(), [lamp], [])
+    (entity,) = of_kind(mapper.finish(np.eye(4)), NodeKind.OBSERVED)
+    assert entity.affordances == {"GlowAbility": pytest.approx(0.9)}
+    assert sum(entity.category_belief.values()) == pytest.approx(1.0)
 
 
 def test_the_same_input_gives_the_same_map(knowledge_base):
