@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sys
 
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb.store import load, query
 
 QUESTION = """
@@ -25,7 +25,7 @@ ORDER BY ?things DESC(?area)
 
 def main(folder: str) -> None:
     """Print one line for each support: name, height, area, how many things stand on it."""
-    answer = query([load(folder)], QUESTION, KnowledgeBase().files)
+    answer = query([load(folder)], QUESTION, AfNet().files)
     for support, height, area, things in answer.cells():
         print(f"{support}: {float(height):.2f} m high, {float(area):.1f} m², {things} things on it")
 

@@ -13,7 +13,7 @@ from afkb.cli.state import state_of
 from afkb.errors import KnowledgeError
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.knowledge.model import Statement
 
 app = typer.Typer(no_args_is_help=True, help="Build, check and show the ontology.")
@@ -36,7 +36,7 @@ def build(
     Example: afkb ontology build --tables ontology/tables --out ontology/afnet.owl
     """
     from afkb.knowledge import bundled_ontology
-    from afkb.knowledge.build import write_ontology
+    from afkb.ontology.build import write_ontology
 
     tables = tables or bundled_ontology().parent / "tables"
     out = out or bundled_ontology()
@@ -63,7 +63,7 @@ def check(
     Example: afkb ontology check my-home.owl
     """
     from afkb.inference import Network
-    from afkb.knowledge.names import STATUSES
+    from afkb.ontology.names import STATUSES
 
     base = state_of(ctx).host.knowledge_base.extended(extensions or [])
     Network.compile(base)
@@ -123,7 +123,7 @@ def network(
     print_text(str(out))
 
 
-def _items(base: KnowledgeBase) -> dict[str, list[Statement]]:
+def _items(base: AfNet) -> dict[str, list[Statement]]:
     return {
         "features": list(base.features.values()),
         "scales": list(base.scales.values()),

@@ -11,7 +11,7 @@ from afkb.errors import EvidenceError
 from afkb.inference.objects import ObjectNetwork
 from afkb.inference.relations import RelationshipNetwork
 from afkb.inference.rooms import RoomNetwork
-from afkb.knowledge import SOMETHING_ELSE, EvidenceClass, KnowledgeBase
+from afkb.knowledge import SOMETHING_ELSE, AfNet, EvidenceClass
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,13 +22,13 @@ class Network:
     variable elimination is the tests' oracle.
     """
 
-    knowledge_base: KnowledgeBase
+    knowledge_base: AfNet
     objects: ObjectNetwork
     rooms: RoomNetwork
     relations: RelationshipNetwork
 
     @classmethod
-    def compile(cls, kb: KnowledgeBase) -> Network:
+    def compile(cls, kb: AfNet) -> Network:
         """Compile the network of a knowledge base; the same base gives the same network."""
         return cls(
             kb, ObjectNetwork.compile(kb), RoomNetwork.compile(kb), RelationshipNetwork.compile(kb)
@@ -121,6 +121,6 @@ class Network:
 
 
 @lru_cache(maxsize=8)
-def network_of(kb: KnowledgeBase) -> Network:
+def network_of(kb: AfNet) -> Network:
     """The network of a knowledge base, compiled once per base."""
     return Network.compile(kb)

@@ -18,7 +18,7 @@ from afkb.inference.bands import (
     size_bands,
     top_bands,
 )
-from afkb.knowledge import SOMETHING_ELSE, Category, KnowledgeBase
+from afkb.knowledge import SOMETHING_ELSE, AfNet, Category
 
 SUPPORT = "SupportAbility"
 LENGTH, WIDTH, HEIGHT, TOP = "Length", "Width", "Height", "TopHeight"
@@ -41,7 +41,7 @@ class ObjectNetwork:
     implied: Mapping[str, frozenset[str]]
 
     @classmethod
-    def compile(cls, kb: KnowledgeBase) -> ObjectNetwork:
+    def compile(cls, kb: AfNet) -> ObjectNetwork:
         """The network of the categories, afbits, sizes and heights that the ontology states."""
         names = tuple(kb.categories)
         prior = np.array([c.expected_number for c in kb.categories.values()])
@@ -145,7 +145,7 @@ class ObjectNetwork:
         return dict(zip(self.categories, (weights / total).tolist(), strict=True))
 
 
-def _features(kb: KnowledgeBase, prior: Array) -> dict[str, Array]:
+def _features(kb: AfNet, prior: Array) -> dict[str, Array]:
     afbits = [_inherited(kb, c) for c in kb.categories.values()]
     used = sorted({f for bits in afbits for f in bits if kb.features[f].kind != "grasp"})
     leak, breadth = kb.parameters["AfbitLeak"], kb.parameters["UnknownBreadth"]
@@ -161,7 +161,7 @@ def _features(kb: KnowledgeBase, prior: Array) -> dict[str, Array]:
     return features
 
 
-def _inherited(kb: KnowledgeBase, category: Category) -> dict[str, float]:
+def _inherited(kb: AfNet, category: Category) -> dict[str, float]:
     """The category's afbits, and those of its broader categories that it doesn't state itself."""
     bits: dict[str, float] = {}
     seen: set[str] = set()
@@ -173,7 +173,7 @@ def _inherited(kb: KnowledgeBase, category: Category) -> dict[str, float]:
     return bits
 
 
-def _measures(kb: KnowledgeBase) -> dict[str, Array]:
+def _measures(kb: AfNet) -> dict[str, Array]:
     spread, noise = kb.parameters["SizeSpread"], kb.parameters["SizeNoise"]
     height_noise = kb.parameters["HeightNoise"]
     categories = kb.categories.values()
@@ -191,7 +191,7 @@ def _measures(kb: KnowledgeBase) -> dict[str, Array]:
     return {name: np.array(bands).T for name, bands in columns.items()}
 
 
-def _broader(kb: KnowledgeBase, name: str) -> frozenset[str]:
+def _broader(kb: AfNet, name: str) -> frozenset[str]:
     found: list[str] = []
     broader = kb.features[name].broader
     while broader is not None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from afkb.errors import EvidenceError
 from afkb.inference.bands import Array
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,7 +26,7 @@ class RelationshipNetwork:
     rules: Mapping[str, Array]
 
     @classmethod
-    def compile(cls, kb: KnowledgeBase) -> RelationshipNetwork:
+    def compile(cls, kb: AfNet) -> RelationshipNetwork:
         """The tables of the duals and co-occurrences that the ontology states."""
         names = tuple(kb.categories)
         rules: dict[str, Array] = {}

@@ -10,7 +10,7 @@ import numpy as np
 
 from afkb.errors import EvidenceError
 from afkb.inference.bands import Array
-from afkb.knowledge import UNKNOWN_ROOM, KnowledgeBase
+from afkb.knowledge import UNKNOWN_ROOM, AfNet
 
 COUNT_BINS = ((0, 0), (1, 1), (2, 2), (3, 4), (5, 8), (9, None))
 """Counts that the network tells apart, first to last; None is without end."""
@@ -32,7 +32,7 @@ class RoomNetwork:
     counts: Mapping[str, Array]
 
     @classmethod
-    def compile(cls, kb: KnowledgeBase) -> RoomNetwork:
+    def compile(cls, kb: AfNet) -> RoomNetwork:
         """The network of the rooms and expected counts that the ontology states (paper §II.F)."""
         prior = np.array([r.expected_number for r in kb.rooms.values()])
         prior /= prior.sum()
@@ -70,7 +70,7 @@ def bin_of(name: str, count: int) -> int:
     return next(i for i, (_, last) in enumerate(COUNT_BINS) if last is None or count <= last)
 
 
-def _count_table(kb: KnowledgeBase, name: str, prior: Array, shares: tuple[float, ...]) -> Array:
+def _count_table(kb: AfNet, name: str, prior: Array, shares: tuple[float, ...]) -> Array:
     """(bins, R, S): a room that states no count has the mean of those that do."""
     stated = [r.expected_counts.get(name) for r in kb.rooms.values()]
     unknown = np.array([room == UNKNOWN_ROOM for room in kb.rooms])

@@ -1,6 +1,6 @@
 """AfNet/AfRob: affordance features, categories, duals, co-occurrences and rooms, from OWL."""
 
-from afkb.knowledge.base import KnowledgeBase, bundled_ontology
+from afkb.knowledge.base import AfNet, bundled_ontology
 from afkb.knowledge.model import (
     Category,
     CoOccurrence,
@@ -12,18 +12,18 @@ from afkb.knowledge.model import (
     Scale,
     Trapezoid,
 )
-from afkb.knowledge.names import AFN, SOMETHING_ELSE, UNKNOWN_ROOM
+from afkb.ontology.names import AFN, SOMETHING_ELSE, UNKNOWN_ROOM
 
 __all__ = [
     "AFN",
     "SOMETHING_ELSE",
     "UNKNOWN_ROOM",
+    "AfNet",
     "Category",
     "CoOccurrence",
     "Dual",
     "EvidenceClass",
     "Feature",
-    "KnowledgeBase",
     "Relationship",
     "RoomCategory",
     "Scale",

@@ -28,7 +28,7 @@ def bundled_ontology() -> Path:
     raise KnowledgeError(f"{package / '_ontology' / 'afnet.owl'}: missing; reinstall afkb")
 
 
-class KnowledgeBase:
+class AfNet:
     """AfNet/AfRob as the rest of the program sees it (paper §II.A to §II.D).
 
     Lazy: nothing is read before the first question. `ontology` replaces the bundled file;
@@ -40,9 +40,9 @@ class KnowledgeBase:
         self._ontology = Path(ontology) if ontology is not None else None
         self._extensions = tuple(Path(p) for p in extensions)
 
-    def extended(self, paths: Sequence[Path]) -> KnowledgeBase:
+    def extended(self, paths: Sequence[Path]) -> AfNet:
         """A knowledge base with these files added."""
-        return KnowledgeBase(self._ontology, (*self._extensions, *paths))
+        return AfNet(self._ontology, (*self._extensions, *paths))
 
     @cached_property
     def files(self) -> tuple[Path, ...]:

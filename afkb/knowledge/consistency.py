@@ -6,7 +6,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from afkb.knowledge.facts import Facts
-from afkb.knowledge.names import SOMETHING_ELSE, UNKNOWN_ROOM, fragment
+from afkb.ontology.names import SOMETHING_ELSE, UNKNOWN_ROOM, fragment
 
 if TYPE_CHECKING:
     from afkb.knowledge.content import Content

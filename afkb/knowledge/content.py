@@ -19,7 +19,7 @@ from afkb.knowledge.model import (
     RoomCategory,
     Scale,
 )
-from afkb.knowledge.names import fragment
+from afkb.ontology.names import fragment
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from afkb.errors import KnowledgeError
-from afkb.knowledge.names import AFN, RDF_TYPE
+from afkb.ontology.names import AFN, RDF_TYPE
 
 
 @dataclass(slots=True)

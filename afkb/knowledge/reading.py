@@ -20,7 +20,7 @@ from afkb.knowledge.model import (
     Statement,
     Trapezoid,
 )
-from afkb.knowledge.names import DCTERMS, RDFS_LABEL, RELATIONS, SKOS, fragment
+from afkb.ontology.names import DCTERMS, RDFS_LABEL, RELATIONS, SKOS, fragment
 
 T = TypeVar("T", bound=Statement)
 _KINDS = {

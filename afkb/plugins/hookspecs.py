@@ -11,42 +11,40 @@ from afkb.plugins import hookspec
 if TYPE_CHECKING:
     import typer
 
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Detector, Exporter, MapperFactory, Predictor, Source
 
 
 @hookspec(firstresult=True)
-def afkb_open_source(
-    uri: str, options: Mapping[str, str], knowledge_base: KnowledgeBase
-) -> Source | None:
+def afkb_open_source(uri: str, options: Mapping[str, str], knowledge_base: AfNet) -> Source | None:
     """Open a recording if it is of a kind this plugin knows, else return None."""
 
 
 @hookspec
-def afkb_detectors(knowledge_base: KnowledgeBase) -> Iterable[Detector]:
+def afkb_detectors(knowledge_base: AfNet) -> Iterable[Detector]:
     """Return detectors, ready to use."""
 
 
 @hookspec
-def afkb_predictors(knowledge_base: KnowledgeBase) -> Iterable[Predictor]:
+def afkb_predictors(knowledge_base: AfNet) -> Iterable[Predictor]:
     """Return predictors, ready to use."""
 
 
 @hookspec
-def afkb_mappers(knowledge_base: KnowledgeBase) -> Iterable[MapperFactory]:
+def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
     """Return factories of mappers."""
 
 
 @hookspec
-def afkb_exporters(knowledge_base: KnowledgeBase) -> Iterable[Exporter]:
+def afkb_exporters(knowledge_base: AfNet) -> Iterable[Exporter]:
     """Return exporters, ready to use."""
 
 
 @hookspec
-def afkb_ontologies(knowledge_base: KnowledgeBase) -> Iterable[Path]:
+def afkb_ontologies(knowledge_base: AfNet) -> Iterable[Path]:
     """Return paths of RDF/XML files that extend the ontology; handed the base it will extend."""
 
 
 @hookspec
-def afkb_commands(cli: typer.Typer, knowledge_base: KnowledgeBase) -> None:
+def afkb_commands(cli: typer.Typer, knowledge_base: AfNet) -> None:
     """Add commands to the command line; the knowledge base is read when it is first used."""

@@ -14,7 +14,7 @@ from urllib.request import url2pathname
 import pluggy
 
 from afkb.errors import PluginError, SourceError
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb.plugins import PROJECT, hookspecs
 from afkb.plugins.protocols import Detector, Exporter, MapperFactory, Predictor, Source
 
@@ -78,9 +78,9 @@ class PluginHost:
         self.manager.register(plugin, name=name)
 
     @cached_property
-    def knowledge_base(self) -> KnowledgeBase:
+    def knowledge_base(self) -> AfNet:
         """The ontology with every extension, read when it is first used."""
-        base = KnowledgeBase(self._ontology, self._extensions)
+        base = AfNet(self._ontology, self._extensions)
         brought = self.manager.hook.afkb_ontologies(knowledge_base=base)
         paths = [Path(p) for group in brought for p in group]
         return base.extended(paths) if paths else base

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from afkb.flow import Detection, View
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb.plugins.protocols import Detector
 from afkb.testing.require import require, require_known, require_name, same
 
@@ -18,7 +18,7 @@ _FARTHEST_M = 100.0
 def check_detector(
     detector: Detector,
     views: Sequence[View],
-    knowledge_base: KnowledgeBase | None = None,
+    knowledge_base: AfNet | None = None,
     earlier: Sequence[Detector] = (),
 ) -> None:
     """Raise unless the detector keeps its contract on these placed views.

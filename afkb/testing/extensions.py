@@ -8,12 +8,12 @@ import pluggy
 import typer
 
 from afkb.errors import KnowledgeError
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb.plugins import PROJECT, hookspecs
 from afkb.testing.require import require
 
 
-def check_ontology(path: Path, knowledge_base: KnowledgeBase) -> None:
+def check_ontology(path: Path, knowledge_base: AfNet) -> None:
     """Raise unless the RDF/XML file extends the ontology and takes nothing away from it."""
     who = f"ontology {path.name}"
     require(path.is_file(), who, f"no file at {path}", "return a path inside the package")
@@ -29,7 +29,7 @@ def check_ontology(path: Path, knowledge_base: KnowledgeBase) -> None:
     require(files, who, "is not among the files in use", "its path must reach SPARQL queries too")
 
 
-def check_commands(plugin: object, knowledge_base: KnowledgeBase) -> None:
+def check_commands(plugin: object, knowledge_base: AfNet) -> None:
     """Raise unless each command that the plugin adds has help with an example.
 
     `plugin`: the module or object with the `afkb_commands` hook.

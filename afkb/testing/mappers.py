@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from afkb.flow import Detection, Entity, Hypothesis, NodeKind, TopologicalMap, View
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb.plugins.protocols import Mapper, MapperFactory
 from afkb.testing.require import (
     require,
@@ -25,7 +25,7 @@ _RULES = ("log-odds", "noisy-or", "literal")
 
 def check_mapper_factory(
     factory: MapperFactory,
-    knowledge_base: KnowledgeBase,
+    knowledge_base: AfNet,
     views: Sequence[View] | None = None,
     detections: Sequence[Detection] | None = None,
     hypotheses: Sequence[Hypothesis] | None = None,
@@ -64,7 +64,7 @@ def _run(
     return mapper.finish(np.eye(4))
 
 
-def check_map(result: TopologicalMap, knowledge_base: KnowledgeBase, who: str = "map") -> None:
+def check_map(result: TopologicalMap, knowledge_base: AfNet, who: str = "map") -> None:
     """Raise unless ids are unique and resolve, numbers are sane, and words are the ontology's."""
     nodes = [place.id for place in result.places] + [entity.id for entity in result.entities]
     nodes += [bound.id for bound in result.bounds] + [door.id for door in result.doorways]
@@ -83,7 +83,7 @@ def check_map(result: TopologicalMap, knowledge_base: KnowledgeBase, who: str = 
     _check_grid(result, who)
 
 
-def _check_entity(entity: Entity, ids: set[str], knowledge_base: KnowledgeBase, who: str) -> None:
+def _check_entity(entity: Entity, ids: set[str], knowledge_base: AfNet, who: str) -> None:
     at = f"{who}, {entity.id}"
     numbers = (*entity.position_xyz, *entity.size_xyz, entity.yaw)
     finite = all(math.isfinite(v) for v in numbers) and min(entity.size_xyz) >= 0
@@ -105,7 +105,7 @@ def _check_entity(entity: Entity, ids: set[str], knowledge_base: KnowledgeBase, 
         require(len(entity.predicted_from) > 0, at, "predicted from nothing", "name its evidence")
 
 
-def _check_rooms(result: TopologicalMap, knowledge_base: KnowledgeBase, who: str) -> None:
+def _check_rooms(result: TopologicalMap, knowledge_base: AfNet, who: str) -> None:
     for room in result.rooms:
         at = f"{who}, {room.id}"
         total = sum(room.belief.values())

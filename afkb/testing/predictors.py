@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from afkb.flow import Detection, Hypothesis
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb.plugins.protocols import Predictor
 from afkb.testing.require import (
     require,
@@ -18,7 +18,7 @@ from afkb.testing.require import (
 
 
 def check_predictor(
-    predictor: Predictor, detections: Sequence[Detection], knowledge_base: KnowledgeBase
+    predictor: Predictor, detections: Sequence[Detection], knowledge_base: AfNet
 ) -> None:
     """Raise unless the predictor keeps its contract on one view's detections.
 
@@ -54,7 +54,7 @@ def _check_hypothesis(h: Hypothesis, predictor: Predictor, n_detections: int, wh
         require_probability(p, who, what)
 
 
-def _check_words(h: Hypothesis, knowledge_base: KnowledgeBase, who: str) -> None:
+def _check_words(h: Hypothesis, knowledge_base: AfNet, who: str) -> None:
     require_known(list(h.affordances), knowledge_base.features, who, "affordances")
     require_known(list(h.categories or ()), knowledge_base.categories, who, "categories")
     require_known([h.scale], knowledge_base.scales, who, "scale")

@@ -11,7 +11,7 @@ from afkb.plugins import hookimpl
 if TYPE_CHECKING:
     import typer
 
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Mapper, MapperFactory
 
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class AffordanceMapperFactory:
     """Makes mappers that follow Algorithm 1 of the paper."""
 
-    knowledge_base: KnowledgeBase
+    knowledge_base: AfNet
     name: str = "affordance"
 
     def __call__(self, rule: str) -> Mapper:
@@ -31,13 +31,13 @@ class AffordanceMapperFactory:
 
 
 @hookimpl
-def afkb_mappers(knowledge_base: KnowledgeBase) -> Iterable[MapperFactory]:
+def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
     """Return the built-in mapper."""
     return [AffordanceMapperFactory(knowledge_base)]
 
 
 @hookimpl
-def afkb_commands(cli: typer.Typer, knowledge_base: KnowledgeBase) -> None:
+def afkb_commands(cli: typer.Typer, knowledge_base: AfNet) -> None:
     """Add `map` and `demo`."""
     from afkb_mapping.commands import add_commands
 

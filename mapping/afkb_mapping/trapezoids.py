@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
 
 Limits = tuple[float, float, float, float]
 """Trapezoid (z1, n1, n2, z2): impossible outside z1..z2, fully so between n1 and n2."""
 
 
-def parameters(knowledge_base: KnowledgeBase, feature: str) -> Mapping[str, Limits]:
+def parameters(knowledge_base: AfNet, feature: str) -> Mapping[str, Limits]:
     """Trapezoids that a feature states in the ontology, by name; empty for an unknown feature."""
     found = knowledge_base.features.get(feature)
     if found is None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Source
 
 _TAGS = frozenset({b"FLASER", b"RLASER", b"ROBOTLASER1", b"ODOM", b"PARAM"})
@@ -17,9 +17,7 @@ _SNIFFED_BYTES = 65536
 
 
 @hookimpl
-def afkb_open_source(
-    uri: str, options: Mapping[str, str], knowledge_base: KnowledgeBase
-) -> Source | None:
+def afkb_open_source(uri: str, options: Mapping[str, str], knowledge_base: AfNet) -> Source | None:
     """Open a text file in which a line begins with a CARMEN tag, whatever it is called."""
     path = Path(uri)
     if "://" in uri or not path.is_file() or not _is_carmen(path):

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Detector
 
 
 @hookimpl
-def afkb_detectors(knowledge_base: KnowledgeBase) -> Iterable[Detector]:
+def afkb_detectors(knowledge_base: AfNet) -> Iterable[Detector]:
     """The container detector, with the knowledge base's limits for containers."""
     from afkb_containers.detector import ContainerDetector
     from afkb_containers.settings import ContainerSettings

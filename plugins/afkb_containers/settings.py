@@ -10,7 +10,7 @@ from afkb_containers.stand import Stand
 from afkb_mapping.trapezoids import Limits, parameters
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class ContainerSettings:
         return self.bin_size_m if stand is Stand.ON_FLOOR else self.size_m
 
     @classmethod
-    def from_knowledge(cls, knowledge_base: KnowledgeBase) -> ContainerSettings:
+    def from_knowledge(cls, knowledge_base: AfNet) -> ContainerSettings:
         """The limits that the features state in the ontology; what they leave out stays."""
         opening = parameters(knowledge_base, "ContainAbility")
         solid = parameters(knowledge_base, "IntrinsicContainAbility")

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Predictor
 
 
 @hookimpl
-def afkb_predictors(knowledge_base: KnowledgeBase) -> Iterable[Predictor]:
+def afkb_predictors(knowledge_base: AfNet) -> Iterable[Predictor]:
     """The filtrations of order 1 and 2 (paper §II.D.ii, §II.D.iii)."""
     from afkb_filtrations.co_occurrence import CoOccurrencePredictor
     from afkb_filtrations.duals import DualPredictor

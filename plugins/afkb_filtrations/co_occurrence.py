@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from afkb.flow import Detection, Hypothesis, Relation
 from afkb.inference import Network, network_of
-from afkb.knowledge import CoOccurrence, EvidenceClass, KnowledgeBase
+from afkb.knowledge import AfNet, CoOccurrence, EvidenceClass
 from afkb_filtrations.space import distance_to_box, distance_xy, groups_of, top_height
 
 
@@ -20,7 +20,7 @@ class CoOccurrencePredictor:
     name = "co-occurrence"
     order = 2
 
-    def __init__(self, knowledge_base: KnowledgeBase) -> None:
+    def __init__(self, knowledge_base: AfNet) -> None:
         self._knowledge_base = knowledge_base
 
     def predict(self, detections: Sequence[Detection]) -> list[Hypothesis]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from afkb.flow import Detection, Hypothesis, Relation
 from afkb.inference import Network, network_of
-from afkb.knowledge import Dual, KnowledgeBase
+from afkb.knowledge import AfNet, Dual
 from afkb_filtrations.space import (
     SAME_LEVEL_M,
     distance_to_box,
@@ -31,7 +31,7 @@ class DualPredictor:
     name = "duals"
     order = 1
 
-    def __init__(self, knowledge_base: KnowledgeBase) -> None:
+    def __init__(self, knowledge_base: AfNet) -> None:
         self._knowledge_base = knowledge_base
 
     def predict(self, detections: Sequence[Detection]) -> list[Hypothesis]:

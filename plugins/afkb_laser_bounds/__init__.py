@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Detector
 
 
 @hookimpl
-def afkb_detectors(knowledge_base: KnowledgeBase) -> Iterable[Detector]:
+def afkb_detectors(knowledge_base: AfNet) -> Iterable[Detector]:
     """The laser bound detector."""
     from afkb_laser_bounds.detector import LaserBoundDetector
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Exporter
 
 
 @hookimpl
-def afkb_exporters(knowledge_base: KnowledgeBase) -> Iterable[Exporter]:
+def afkb_exporters(knowledge_base: AfNet) -> Iterable[Exporter]:
     """Return the nav2 exporter."""
     from afkb_nav2.exporter import Nav2Exporter
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Mapper, MapperFactory
 
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class ObservedOnlyFactory:
     """Makes mappers that keep what was seen and nothing else; `--rule` has no effect on them."""
 
-    knowledge_base: KnowledgeBase
+    knowledge_base: AfNet
     name: str = "observed-only"
 
     def __call__(self, rule: str) -> Mapper:
@@ -29,6 +29,6 @@ class ObservedOnlyFactory:
 
 
 @hookimpl
-def afkb_mappers(knowledge_base: KnowledgeBase) -> Iterable[MapperFactory]:
+def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
     """Return the mapper without predictions."""
     return [ObservedOnlyFactory(knowledge_base)]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Source
 
 _METADATA = "metadata.yaml"
@@ -17,9 +17,7 @@ _ENDINGS = frozenset({".bag", ".mcap", ".db3"})
 
 
 @hookimpl
-def afkb_open_source(
-    uri: str, options: Mapping[str, str], knowledge_base: KnowledgeBase
-) -> Source | None:
+def afkb_open_source(uri: str, options: Mapping[str, str], knowledge_base: AfNet) -> Source | None:
     """Open a `.bag`, `.mcap` or `.db3` file, or a folder that holds such files."""
     path = Path(uri)
     if "://" in uri or not _is_bag(path):

@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Source
 
 
 @hookimpl
-def afkb_open_source(
-    uri: str, options: Mapping[str, str], knowledge_base: KnowledgeBase
-) -> Source | None:
+def afkb_open_source(uri: str, options: Mapping[str, str], knowledge_base: AfNet) -> Source | None:
     """Open a folder that holds `frame-XXXXXX.depth.png` and the like, or nothing at all."""
     folder = Path(uri)
     if "://" in uri or not folder.is_dir():

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Source
 
 
 @hookimpl
-def afkb_open_source(
-    uri: str, options: Mapping[str, str], knowledge_base: KnowledgeBase
-) -> Source | None:
+def afkb_open_source(uri: str, options: Mapping[str, str], knowledge_base: AfNet) -> Source | None:
     """Open `*.world.yaml` and `world:NAME`; option `seed` replaces the world's seed."""
     if not (uri.endswith(".world.yaml") or uri.startswith("world:")):
         return None

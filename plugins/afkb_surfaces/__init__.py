@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Detector
 
 
 @hookimpl
-def afkb_detectors(knowledge_base: KnowledgeBase) -> Iterable[Detector]:
+def afkb_detectors(knowledge_base: AfNet) -> Iterable[Detector]:
     """The surface detector, with the knowledge base's limits for supports and bounds."""
     from afkb_surfaces.detector import SurfaceDetector
     from afkb_surfaces.settings import SurfaceSettings

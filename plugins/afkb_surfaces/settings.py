@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from afkb_mapping.trapezoids import Limits, parameters
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class SurfaceSettings:
     footprint_step_m: float = 0.02
 
     @classmethod
-    def from_knowledge(cls, knowledge_base: KnowledgeBase) -> SurfaceSettings:
+    def from_knowledge(cls, knowledge_base: AfNet) -> SurfaceSettings:
         """The limits that the features state in the ontology; what they leave out stays."""
         support = parameters(knowledge_base, "SupportAbility")
         block = parameters(knowledge_base, "BlockAbility")

@@ -102,10 +102,10 @@ def test_python_runs(
 
 @pytest.mark.parametrize("block", blocks("sparql"), ids=lambda b: b.id)
 def test_queries_are_answered(block: Block, demo_folder: Path) -> None:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.store import load, query
 
-    answer = query([load(demo_folder / "demo-map")], block.text, KnowledgeBase().files)
+    answer = query([load(demo_folder / "demo-map")], block.text, AfNet().files)
     assert answer.columns or block.text.lstrip().upper().startswith(("ASK", "CONSTRUCT"))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from afkb.knowledge import AFN, KnowledgeBase, bundled_ontology
+from afkb.knowledge import AFN, AfNet, bundled_ontology
 
 _HEAD = """<?xml version="1.0" encoding="UTF-8"?>
 <rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"
@@ -32,10 +32,10 @@ class Copy:
         self.text = self.text.replace(self._block(subject), "")
         return self
 
-    def load(self, folder: Path) -> KnowledgeBase:
+    def load(self, folder: Path) -> AfNet:
         path = folder / "changed.owl"
         path.write_text(self.text, encoding="utf-8")
-        return KnowledgeBase(path)
+        return AfNet(path)
 
     def _block(self, subject: str) -> str:
         start = self.text.index(f'  <rdf:Description rdf:about="{AFN}{subject}">')

@@ -12,7 +12,7 @@ import pytest
 
 from afkb import testing
 from afkb.flow import Detection, Hypothesis, Relation, View
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 
 
 class Table:
@@ -56,11 +56,11 @@ class Below:
 
 
 @pytest.fixture(scope="module")
-def knowledge_base() -> KnowledgeBase:
-    return KnowledgeBase()
+def knowledge_base() -> AfNet:
+    return AfNet()
 
 
-def test_well_behaved_plugins_pass(knowledge_base: KnowledgeBase) -> None:
+def test_well_behaved_plugins_pass(knowledge_base: AfNet) -> None:
     testing.check_detector(Table(), testing.sample_views(), knowledge_base)
     testing.check_source(Recording())
     testing.check_predictor(Below(), testing.sample_detections(), knowledge_base)
@@ -111,7 +111,7 @@ def test_a_detection_that_makes_no_sense_is_caught(change: dict[str, object], me
         testing.check_detector(Wrong(), testing.sample_views())
 
 
-def test_a_detector_of_a_feature_nobody_knows_is_caught(knowledge_base: KnowledgeBase) -> None:
+def test_a_detector_of_a_feature_nobody_knows_is_caught(knowledge_base: AfNet) -> None:
     class Unheard(Table):
         affordances = ("SingAbility",)
 
@@ -162,7 +162,7 @@ def test_a_source_that_renumbers_when_striding_is_caught() -> None:
 
 @pytest.mark.parametrize(("name", "value"), [("anchor", 7), ("axiom", "because"), ("order", 2)])
 def test_a_hypothesis_that_makes_no_sense_is_caught(
-    name: str, value: object, knowledge_base: KnowledgeBase
+    name: str, value: object, knowledge_base: AfNet
 ) -> None:
     wrong = type("Wrong", (Below,), {name: value})()
     with pytest.raises(AssertionError, match=name):
@@ -181,7 +181,7 @@ def test_a_hypothesis_that_makes_no_sense_is_caught(
     ],
 )
 def test_a_map_that_breaks_its_laws_is_caught(
-    change: dict[str, object], message: str, knowledge_base: KnowledgeBase
+    change: dict[str, object], message: str, knowledge_base: AfNet
 ) -> None:
     good = testing.sample_map()
     bad = replace(good, entities=(replace(good.entities[0], **change), *good.entities[1:]))
@@ -189,7 +189,7 @@ def test_a_map_that_breaks_its_laws_is_caught(
         testing.check_map(bad, knowledge_base)
 
 
-def test_rooms_that_do_not_sum_to_one_are_caught(knowledge_base: KnowledgeBase) -> None:
+def test_rooms_that_do_not_sum_to_one_are_caught(knowledge_base: AfNet) -> None:
     good = testing.sample_map()
     room = replace(good.rooms[0], belief={"Kitchen": 0.9, "UnknownRoom": 0.4})
     with pytest.raises(AssertionError, match="sums to"):

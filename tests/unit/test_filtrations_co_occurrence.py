@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from afkb.flow import Detection, Relation
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb.plugins.protocols import Predictor
 from afkb_filtrations import afkb_predictors
 from afkb_filtrations.co_occurrence import CoOccurrencePredictor
@@ -14,7 +14,7 @@ from test_filtrations_duals import table, thing
 
 @pytest.fixture(scope="module")
 def predictor() -> CoOccurrencePredictor:
-    return CoOccurrencePredictor(KnowledgeBase())
+    return CoOccurrencePredictor(AfNet())
 
 
 def chair(x: float, y: float = 0.0) -> Detection:
@@ -69,7 +69,7 @@ def test_a_listed_pair_sets_the_strength_for_its_category(tmp_path: Path) -> Non
 
 
 def test_the_hook_brings_both_orders() -> None:
-    predictors = list(afkb_predictors(knowledge_base=KnowledgeBase()))
+    predictors = list(afkb_predictors(knowledge_base=AfNet()))
     assert [(p.name, p.order) for p in predictors] == [("duals", 1), ("co-occurrence", 2)]
     assert all(isinstance(p, Predictor) for p in predictors)
 
@@ -77,7 +77,7 @@ def test_the_hook_brings_both_orders() -> None:
 def test_a_view_takes_under_five_milliseconds() -> None:
     view = [chair(x) for x in range(8)]
     view += [thing("ContainAbility", (0.4 * i, 3, 0.73)) for i in range(12)]
-    predictors = list(afkb_predictors(knowledge_base=KnowledgeBase()))
+    predictors = list(afkb_predictors(knowledge_base=AfNet()))
     for p in predictors:
         p.predict(view)
     start = time.process_time()

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from afkb.flow import Detection, OrientedBox, Relation
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb_filtrations.duals import DualPredictor
 from ontology_samples import Copy, extension
 
 
 @pytest.fixture(scope="module")
 def predictor() -> DualPredictor:
-    return DualPredictor(KnowledgeBase())
+    return DualPredictor(AfNet())
 
 
 def thing(
@@ -126,7 +126,7 @@ def test_a_dual_of_an_extension_predicts_with_no_change_of_code(tmp_path: Path) 
      <afn:evidenceBottomMin>0.4</afn:evidenceBottomMin>
      <afn:predictedScale rdf:resource="https://w3id.org/afkb/afnet#Small"/>
     </afn:Dual>"""
-    base = KnowledgeBase(extensions=[extension(tmp_path, body)])
+    base = AfNet(extensions=[extension(tmp_path, body)])
     (found,) = DualPredictor(base).predict([table(2, 0)])
     assert found.relation is Relation.ON
     assert found.axiom == "https://example.org/home#SupportPredictsDisplayOn"

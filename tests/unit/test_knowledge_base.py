@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from afkb.errors import KnowledgeError
-from afkb.knowledge import KnowledgeBase, bundled_ontology
+from afkb.knowledge import AfNet, bundled_ontology
 from ontology_samples import Copy, extension
 
 TEAPOT = """
@@ -28,11 +28,11 @@ TEAPOT = """
 
 
 @pytest.fixture(scope="module")
-def base() -> KnowledgeBase:
-    return KnowledgeBase()
+def base() -> AfNet:
+    return AfNet()
 
 
-def test_reads_what_the_paper_states(base: KnowledgeBase) -> None:
+def test_reads_what_the_paper_states(base: AfNet) -> None:
     assert base.categories["Mug"].afbits["ContainAbility"] > 0.9
     assert base.categories["Mug"].movability == "Dynamic"
     assert base.categories["Mug"].matching_weight == pytest.approx(0.3)
@@ -43,37 +43,37 @@ def test_reads_what_the_paper_states(base: KnowledgeBase) -> None:
     assert {"Kitchen", "LivingRoom", "Bedroom", "Bathroom", "UnknownRoom"} <= set(base.rooms)
 
 
-def test_duals_are_directional(base: KnowledgeBase) -> None:
+def test_duals_are_directional(base: AfNet) -> None:
     strengths = {(d.evidence, d.predicted): d.strength for d in base.duals}
     there = strengths["DisplayAbility", "EngraveAbility"]
     back = strengths["EngraveAbility", "DisplayAbility"]
     assert there > 2 * back
 
 
-def test_closed_containers_contain(base: KnowledgeBase) -> None:
+def test_closed_containers_contain(base: AfNet) -> None:
     assert base.features["IntrinsicContainAbility"].broader == "ContainAbility"
 
 
-def test_scales_follow_the_largest_extent(base: KnowledgeBase) -> None:
+def test_scales_follow_the_largest_extent(base: AfNet) -> None:
     assert base.scale_of((0.08, 0.09, 0.1)) == "Small"
     assert base.scale_of((0.45, 0.45, 0.02)) == "Medium"
     assert base.scale_of((1.2, 0.8, 0.02)) == "Large"
 
 
-def test_groundings_have_fuzzy_ranges_in_si_units(base: KnowledgeBase) -> None:
+def test_groundings_have_fuzzy_ranges_in_si_units(base: AfNet) -> None:
     seat = base.features["SitAbility"].parameters["height_m"]
     assert seat(0.45) == 1.0
     assert seat(0.73) == 0.0
     assert 0 < seat(0.35) < 1
 
 
-def test_terms_have_their_iri(base: KnowledgeBase) -> None:
+def test_terms_have_their_iri(base: AfNet) -> None:
     assert base.iri("Mug") == "https://w3id.org/afkb/afnet#Mug"
     with pytest.raises(KnowledgeError, match="no term named 'Unicorn'"):
         base.iri("Unicorn")
 
 
-def test_an_extension_adds_a_category(tmp_path: Path, base: KnowledgeBase) -> None:
+def test_an_extension_adds_a_category(tmp_path: Path, base: AfNet) -> None:
     path = extension(tmp_path, TEAPOT.format(feature="ContainAbility", strength=0.9))
     extended = base.extended([path])
     assert extended.categories["Teapot"].afbits == {"ContainAbility": 0.9}
@@ -91,21 +91,21 @@ def test_an_extension_adds_a_category(tmp_path: Path, base: KnowledgeBase) -> No
     ],
 )
 def test_a_bad_extension_is_refused_with_its_file(
-    tmp_path: Path, base: KnowledgeBase, feature: str, strength: object, message: str
+    tmp_path: Path, base: AfNet, feature: str, strength: object, message: str
 ) -> None:
     path = extension(tmp_path, TEAPOT.format(feature=feature, strength=strength))
     with pytest.raises(KnowledgeError, match=f"home.owl: .*{message}"):
         _ = base.extended([path]).categories
 
 
-def test_an_extension_may_not_state_another_number(tmp_path: Path, base: KnowledgeBase) -> None:
+def test_an_extension_may_not_state_another_number(tmp_path: Path, base: AfNet) -> None:
     mug = '<rdf:Description rdf:about="https://w3id.org/afkb/afnet#Mug">'
     body = mug + "<afn:matchingWeight>0.9</afn:matchingWeight></rdf:Description>"
     with pytest.raises(KnowledgeError, match="Mug: matchingWeight is stated 2 times"):
         _ = base.extended([extension(tmp_path, body)]).categories
 
 
-def test_a_feature_may_not_be_broader_than_itself(tmp_path: Path, base: KnowledgeBase) -> None:
+def test_a_feature_may_not_be_broader_than_itself(tmp_path: Path, base: AfNet) -> None:
     contain = '<rdf:Description rdf:about="https://w3id.org/afkb/afnet#ContainAbility">'
     narrower = "https://w3id.org/afkb/afnet#IntrinsicContainAbility"
     body = f'{contain}<skos:broader rdf:resource="{narrower}"/></rdf:Description>'
@@ -118,12 +118,12 @@ def test_bad_files_are_named(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "broken.owl"
     path.write_bytes(content)
     with pytest.raises(KnowledgeError, match=r"broken\.owl"):
-        _ = KnowledgeBase(extensions=[path]).features
+        _ = AfNet(extensions=[path]).features
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(KnowledgeError, match=r"nowhere\.owl: no such ontology file"):
-        _ = KnowledgeBase(tmp_path / "nowhere.owl").features
+        _ = AfNet(tmp_path / "nowhere.owl").features
 
 
 def test_an_ontology_without_what_the_network_needs_is_refused(tmp_path: Path) -> None:
@@ -132,13 +132,13 @@ def test_an_ontology_without_what_the_network_needs_is_refused(tmp_path: Path) -
 
 
 def test_nothing_is_read_before_the_first_question(tmp_path: Path) -> None:
-    KnowledgeBase(tmp_path / "nowhere.owl").extended([tmp_path / "neither.owl"])
+    AfNet(tmp_path / "nowhere.owl").extended([tmp_path / "neither.owl"])
 
 
-def test_two_bases_do_not_share_a_world(tmp_path: Path, base: KnowledgeBase) -> None:
+def test_two_bases_do_not_share_a_world(tmp_path: Path, base: AfNet) -> None:
     changed = Copy().delete("ContainPredictsSupportBelow").load(tmp_path)
     assert len(changed.duals) == len(base.duals) - 1
-    assert len(KnowledgeBase().duals) == len(base.duals)
+    assert len(AfNet().duals) == len(base.duals)
 
 
 def test_importing_the_knowledge_loads_no_heavy_library() -> None:

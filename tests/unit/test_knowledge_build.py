@@ -7,8 +7,8 @@ from rdflib.namespace import DCTERMS, OWL, RDF, RDFS, SKOS
 
 from afkb.errors import KnowledgeError
 from afkb.knowledge import AFN, bundled_ontology
-from afkb.knowledge.build import build_ontology, property_of, write_ontology
-from afkb.knowledge.names import STATUSES
+from afkb.ontology.build import build_ontology, property_of, write_ontology
+from afkb.ontology.names import STATUSES
 
 TABLES = Path(__file__).parents[2] / "ontology" / "tables"
 STATUS = URIRef(AFN + "status")

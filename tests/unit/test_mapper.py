@@ -7,14 +7,14 @@ import pytest
 
 from afkb.flow import EdgeKind, NodeKind
 from afkb.inference import network_of
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb_mapping.mapper import AffordanceMapper
 from mapping_samples import DUAL, container, support, support_below, support_near, view
 
 
 @pytest.fixture(scope="module")
 def knowledge_base():
-    return KnowledgeBase()
+    return AfNet()
 
 
 @pytest.fixture

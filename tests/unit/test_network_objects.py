@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from afkb.errors import EvidenceError
 from afkb.inference import Network
 from afkb.inference.pgm import CATEGORY, NO_YES, band_states, object_model
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from ontology_samples import Copy, extension
 
 TABLES = {"Table", "KitchenTable", "Desk"}
@@ -20,7 +20,7 @@ Size = tuple[float, float, float]
 
 @pytest.fixture(scope="module")
 def network() -> Network:
-    return Network.compile(KnowledgeBase())
+    return Network.compile(AfNet())
 
 
 def best(posterior: dict[str, float]) -> str:
@@ -161,7 +161,7 @@ def test_closed_form_equals_variable_elimination(
 
 def test_a_weaker_afbit_lowers_its_category_and_no_other_order(tmp_path: Path) -> None:
     size, top = (0.09, 0.08, 0.09), 0.82
-    before = Network.compile(KnowledgeBase())
+    before = Network.compile(AfNet())
     changed = Network.compile(Copy().set("Mug.ContainAbility", "strength", 0.2).load(tmp_path))
     old = before.category_posterior({"ContainAbility": 0.9}, size, top)
     new = changed.category_posterior({"ContainAbility": 0.9}, size, top)
@@ -181,7 +181,7 @@ def test_an_extension_category_is_recognised_and_inherits_afbits(tmp_path: Path)
      <afn:heightMin>0.7</afn:heightMin><afn:heightMax>0.8</afn:heightMax>
      <afn:topMin>0.7</afn:topMin><afn:topMax>0.9</afn:topMax>
     </afn:ObjectCategory>"""
-    network = Network.compile(KnowledgeBase(extensions=[extension(tmp_path, body)]))
+    network = Network.compile(AfNet(extensions=[extension(tmp_path, body)]))
     posterior = network.category_posterior({"ContainAbility": 0.9}, (0.85, 0.85, 0.75), 0.8)
     assert best(posterior) == "Cauldron"
 

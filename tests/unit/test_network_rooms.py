@@ -9,13 +9,13 @@ from afkb.errors import EvidenceError
 from afkb.inference import Network
 from afkb.inference.pgm import COUNT_STATES, ROOM, room_model
 from afkb.inference.rooms import COUNT_BINS, bin_of
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from ontology_samples import Copy
 
 
 @pytest.fixture(scope="module")
 def network() -> Network:
-    return Network.compile(KnowledgeBase())
+    return Network.compile(AfNet())
 
 
 def best(posterior: dict[str, float]) -> str:

@@ -9,7 +9,7 @@ import pytest
 import typer
 
 from afkb.errors import PluginError, SourceError
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb.plugins import hookimpl, hookspecs
 from afkb.plugins import host as host_module
 from afkb.plugins.host import PluginHost
@@ -31,7 +31,7 @@ class Brings:
         self.detectors, self.handed = detectors, None
 
     @hookimpl
-    def afkb_detectors(self, knowledge_base: KnowledgeBase) -> list[Named]:
+    def afkb_detectors(self, knowledge_base: AfNet) -> list[Named]:
         self.handed = knowledge_base
         return list(self.detectors)
 
@@ -98,9 +98,7 @@ def test_what_each_hook_returns_reaches_whoever_asks(
     host: PluginHost, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     extended: list[Path] = []
-    monkeypatch.setattr(
-        KnowledgeBase, "extended", lambda self, paths: extended.extend(paths) or self
-    )
+    monkeypatch.setattr(AfNet, "extended", lambda self, paths: extended.extend(paths) or self)
     host.register(BringsAll(), name="all")
     assert host.open_source("mine:1") == "opened mine:1"
     assert host.predictors(["my-predictor"])[0].name == "my-predictor"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb.store import StoredMap, load, query, write_map
 from afkb.store.named import named_queries
 from afkb.store.shapes import info_json, node_json, rooms_json
@@ -30,7 +30,7 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> StoredMap:
 
 @pytest.mark.parametrize("sparql", blocks(COOKBOOK, "sparql"))
 def test_every_question_of_the_cookbook_has_an_answer(stored: StoredMap, sparql: str) -> None:
-    answer = query([stored], sparql, KnowledgeBase().files)
+    answer = query([stored], sparql, AfNet().files)
     assert answer.truth or answer.rows
 
 
@@ -77,4 +77,4 @@ def test_the_ontology_declares_every_term_of_a_scene(stored: StoredMap) -> None:
           FILTER (?map != <urn:afkb:ontology> && STRSTARTS(STR(?term), STR(afn:)))
           FILTER NOT EXISTS { GRAPH <urn:afkb:ontology> { ?term skos:definition ?definition } }
         }"""
-    assert query([stored], sparql, KnowledgeBase().files).cells() == []
+    assert query([stored], sparql, AfNet().files).cells() == []

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from afkb.flow import Detection, View
-from afkb.knowledge import KnowledgeBase
+from afkb.knowledge import AfNet
 from afkb_surfaces.cells import COUNT, A, B, C, cell_planes, cell_sums
 from afkb_surfaces.detector import SurfaceDetector
 from afkb_surfaces.settings import SurfaceSettings
@@ -109,7 +109,7 @@ def test_a_cell_plane_is_the_least_squares_fit_of_inverse_depth() -> None:
 
 
 def test_limits_come_from_the_ontology() -> None:
-    knowledge_base = KnowledgeBase()
+    knowledge_base = AfNet()
     limits = knowledge_base.features["SupportAbility"].parameters["normal_to_up_deg"]
     settings = SurfaceSettings.from_knowledge(knowledge_base)
     assert settings.normal_to_up_deg == (limits.z1, limits.n1, limits.n2, limits.z2)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from afkb.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from afkb.knowledge import KnowledgeBase
+    from afkb.knowledge import AfNet
     from afkb.plugins.protocols import Detector, Mapper, MapperFactory
 
 
@@ -29,7 +29,7 @@ def afkb_detectors() -> Iterable[Detector]:
 class SkeletonFactory:
     """Makes mappers that keep places, supports and what rolls; `--rule` has no effect on them."""
 
-    knowledge_base: KnowledgeBase
+    knowledge_base: AfNet
     name: str = "skeleton"
 
     def __call__(self, rule: str) -> Mapper:
@@ -41,7 +41,7 @@ class SkeletonFactory:
 
 
 @hookimpl
-def afkb_mappers(knowledge_base: KnowledgeBase) -> Iterable[MapperFactory]:
+def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
     """Return the small mapper; a hook may leave out the arguments it does not need."""
     return [SkeletonFactory(knowledge_base)]
 

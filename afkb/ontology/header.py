@@ -5,7 +5,7 @@ from __future__ import annotations
 from rdflib import Graph, Literal, URIRef
 from rdflib.namespace import DCTERMS, OWL, PROV, RDF, RDFS, SKOS, XSD
 
-from afkb.knowledge.names import AFN, ONTOLOGY_IRI, VERSION
+from afkb.ontology.names import AFN, ONTOLOGY_IRI, VERSION
 
 GEO = "http://www.opengis.net/ont/geosparql#"
 VANN = "http://purl.org/vocab/vann/"

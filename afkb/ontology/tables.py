@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from afkb.errors import KnowledgeError
-from afkb.knowledge.names import STATUSES
+from afkb.ontology.names import STATUSES
 
 
 @dataclass(frozen=True, slots=True)

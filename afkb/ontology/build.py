@@ -11,10 +11,10 @@ from rdflib import BNode, Graph, Literal, URIRef
 from rdflib.namespace import DCTERMS, OWL, RDF, RDFS, SKOS, XSD
 
 from afkb.errors import KnowledgeError
-from afkb.knowledge.header import PREFIXES, add_external_terms, add_header
-from afkb.knowledge.names import AFN, SOMETHING_ELSE
-from afkb.knowledge.rdfxml import to_rdfxml
-from afkb.knowledge.tables import Row, read_table
+from afkb.ontology.header import PREFIXES, add_external_terms, add_header
+from afkb.ontology.names import AFN, SOMETHING_ELSE
+from afkb.ontology.rdfxml import to_rdfxml
+from afkb.ontology.tables import Row, read_table
 
 _TEXT = {
     "label": RDFS.label,
