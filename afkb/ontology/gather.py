@@ -1,0 +1,135 @@
+"""Gathers what public tables say of the categories, as evidence for the rules that make afbits."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from afkb.errors import KnowledgeError
+from afkb.ontology.tables import Row
+
+HEADER = ("category", "source", "property", "name", "found_in")
+_ENOUGH = 0.5
+"""Share of a category's names in a table that must have a property for the category to have it."""
+
+
+@dataclass(frozen=True, slots=True)
+class PublicTable:
+    """A public table: name of a thing in it to property to the file and line that say so."""
+
+    source: str
+    said: Mapping[str, Mapping[str, str]]
+
+
+def gather(folder: Path, names: Iterable[Row]) -> dict[str, str]:
+    """Evidence per public table as CSV text, from a folder of public tables.
+
+    `names`: rows of category, source, name. A name that its table doesn't have is a
+    `KnowledgeError` with the row's place.
+    """
+    tables = {
+        "virtualhome": _virtualhome(folder),
+        "bddl": _bddl(folder),
+        "wordnet": _wordnet(folder),
+        "procthor": _procthor(folder),
+    }
+    wanted: dict[tuple[str, str], list[Row]] = {}
+    for row in names:
+        for source in ("bddl", "wordnet") if row["source"] == "bddl" else (row["source"],):
+            if source in tables:
+                wanted.setdefault((source, row["category"]), []).append(row)
+    lines: dict[str, list[tuple[str, ...]]] = {source: [] for source in tables}
+    for (source, category), rows in sorted(wanted.items()):
+        lines[source] += _evidence(tables[source], category, rows)
+    return {source: _csv(found) for source, found in lines.items()}
+
+
+def _evidence(table: PublicTable, category: str, rows: list[Row]) -> Iterator[tuple[str, ...]]:
+    counts: Counter[str] = Counter()
+    for row in rows:
+        if row["name"] not in table.said:
+            raise row.error(f"{table.source} has nothing named {row['name']!r}; mend the name")
+        counts.update(table.said[row["name"]].keys())
+    for name in sorted(counts):
+        if counts[name] >= _ENOUGH * len(rows):
+            said_of = next(r["name"] for r in rows if name in table.said[r["name"]])
+            yield category, table.source, name, said_of, table.said[said_of][name]
+
+
+def _virtualhome(folder: Path) -> PublicTable:
+    file = "virtualhome_properties.csv"
+    said = {
+        row["object"]: {p.strip(): place for p in row["properties"].split("|") if p.strip()}
+        for row, place in _rows(folder, file)
+    }
+    return PublicTable("virtualhome", said)
+
+
+def _bddl(folder: Path) -> PublicTable:
+    properties = {
+        row["synset"]: {p.strip(): place for p in row["properties"].split("|") if p.strip()}
+        for row, place in _rows(folder, "bddl_synset_properties.csv")
+    }
+    return PublicTable("bddl", {c: properties.get(s, {}) for c, s in _synsets(folder).items()})
+
+
+def _wordnet(folder: Path) -> PublicTable:
+    """A category's synset and all its hypernyms."""
+    above = {
+        row["synset"]: ([h.strip() for h in row["hypernyms"].split(",") if h.strip()], place)
+        for row, place in _rows(folder, "bddl_synset_properties.csv")
+    }
+    return PublicTable("wordnet", {c: _hypernyms(s, above) for c, s in _synsets(folder).items()})
+
+
+def _hypernyms(synset: str, above: Mapping[str, tuple[list[str], str]]) -> dict[str, str]:
+    found: dict[str, str] = {}
+    waiting = [(synset, above[synset][1] if synset in above else "")]
+    while waiting:
+        name, place = waiting.pop(0)
+        if name in found or not place:
+            continue
+        found[name] = place
+        if name in above:
+            waiting += [(h, above[name][1]) for h in above[name][0]]
+    return found
+
+
+def _procthor(folder: Path) -> PublicTable:
+    said: dict[str, dict[str, str]] = {}
+    for row, place in _rows(folder, "procthor_asset_dims_m.csv"):
+        said[row["object_type"]] = {"Asset": place}
+    for row, place in _rows(folder, "procthor_receptacle_given.csv"):
+        said.setdefault(row["receptacle"], {}).setdefault("Receptacle", place)
+    for row, place in _rows(folder, "procthor_placement.csv"):
+        for column, name in (("isPickupable", "Pickupable"), ("onWall", "OnWall")):
+            if row[column] == "True":
+                said.setdefault(row["object"], {})[name] = place
+    return PublicTable("procthor", said)
+
+
+def _synsets(folder: Path) -> dict[str, str]:
+    rows = _rows(folder, "bddl_category_synset_mass.csv")
+    return {row["category"]: row["synset"] for row, _ in rows}
+
+
+def _rows(folder: Path, file: str) -> Iterator[tuple[dict[str, str], str]]:
+    path = folder / file
+    if not path.is_file():
+        raise KnowledgeError(f"{path}: missing; give the folder that holds the public tables")
+    with path.open(encoding="utf-8", newline="") as stream:
+        reader = csv.DictReader(stream)
+        for row in reader:
+            yield row, f"{file}, line {reader.line_num}"
+
+
+def _csv(lines: Iterable[tuple[str, ...]]) -> str:
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(HEADER)
+    writer.writerows(lines)
+    return out.getvalue()

@@ -1,0 +1,72 @@
+"""Rows of tables as statements about individuals."""
+
+from __future__ import annotations
+
+from rdflib import Graph, Literal, URIRef
+from rdflib.namespace import OWL, RDF, RDFS, SKOS, XSD
+
+from afkb.ontology.names import AFN
+from afkb.ontology.schema import KINDS, Table
+from afkb.ontology.tables import Row
+
+FROM_ROW = URIRef(AFN + "fromRow")
+"""Where a statement stands: file and line of its row."""
+
+
+def add_individual(graph: Graph, table: Table, row: Row) -> URIRef:
+    """Add what a row states; `KnowledgeError`, with its place, where its name is taken."""
+    subject = URIRef(AFN + table.name_of(row))
+    earlier = graph.value(subject, FROM_ROW)
+    if earlier is not None or (subject, RDF.type, None) in graph:
+        where = f", after {earlier}" if earlier is not None else ""
+        name = table.name_of(row)
+        raise row.error(f"{name} is stated a second time{where}; keep one, or rename this one")
+    graph.add((subject, RDF.type, OWL.NamedIndividual))
+    graph.add((subject, RDF.type, URIRef(AFN + class_of(table, row))))
+    graph.add((subject, FROM_ROW, Literal(row.place, datatype=XSD.string)))
+    for predicate, value in table.statements(row):
+        graph.add((subject, predicate, value))
+    if table.parts and not row.get("label"):
+        text = ": ".join(row.get(part) for part in table.parts if row.get(part))
+        graph.add((subject, RDFS.label, Literal(text, lang="en")))
+    return subject
+
+
+def class_of(table: Table, row: Row) -> str:
+    """Name of the class of the row's individual."""
+    if table.class_name:
+        return table.class_name
+    if row["kind"] not in KINDS:
+        raise row.error(f"kind {row['kind']!r} is none of: {', '.join(KINDS)}")
+    return KINDS[row["kind"]]
+
+
+_TERM_KINDS = {
+    "class": OWL.Class,
+    "object": OWL.ObjectProperty,
+    "data": OWL.DatatypeProperty,
+    "annotation": OWL.AnnotationProperty,
+    "individual": OWL.NamedIndividual,
+}
+
+
+def add_term(graph: Graph, row: Row) -> None:
+    """Add a class, property or vocabulary individual from a row of `vocabulary.csv`."""
+    subject = URIRef(AFN + row["name"])
+    if row["kind"] not in _TERM_KINDS:
+        raise row.error(f"kind {row['kind']!r} is none of: {', '.join(_TERM_KINDS)}")
+    graph.add((subject, RDF.type, _TERM_KINDS[row["kind"]]))
+    graph.add((subject, FROM_ROW, Literal(row.place, datatype=XSD.string)))
+    link = RDF.type if row["kind"] == "individual" else RDFS.subClassOf
+    for parent in row.several("parent"):
+        graph.add((subject, link, URIRef(AFN + parent)))
+    if row.get("domain"):
+        graph.add((subject, RDFS.domain, URIRef(AFN + row["domain"])))
+    if row.get("range"):
+        base = str(XSD) if row["kind"] == "data" else AFN
+        graph.add((subject, RDFS.range, URIRef(base + row["range"])))
+    graph.add((subject, RDFS.label, Literal(row["label"], lang="en")))
+    graph.add((subject, SKOS.definition, Literal(row["definition"], lang="en")))
+    graph.add((subject, RDFS.comment, Literal(row["definition"], lang="en")))
+    for example in row.several("example"):
+        graph.add((subject, SKOS.example, Literal(example, lang="en")))
