@@ -11,6 +11,7 @@ from afkb.knowledge import reading
 from afkb.knowledge.consistency import check_references
 from afkb.knowledge.facts import Facts, read_facts
 from afkb.knowledge.model import (
+    Afbit,
     Category,
     CoOccurrence,
     Dual,
@@ -29,6 +30,7 @@ class Content:
     features: Mapping[str, Feature]
     scales: Mapping[str, Scale]
     categories: Mapping[str, Category]
+    afbits: tuple[Afbit, ...]
     duals: tuple[Dual, ...]
     co_occurrences: tuple[CoOccurrence, ...]
     evidence_classes: Mapping[str, EvidenceClass]
@@ -44,10 +46,12 @@ def read_content(files: Sequence[Path]) -> Content:
     scales = reading.read_all(facts, "Scale", reading.read_scale)
     duals = reading.read_all(facts, "Dual", reading.read_dual)
     pairs = reading.read_all(facts, "CoOccurrence", reading.read_co_occurrence)
+    afbits = reading.read_afbits(facts)
     content = Content(
         features=reading.read_features(facts),
         scales=MappingProxyType(dict(sorted(scales.items(), key=lambda s: s[1].extent_m))),
-        categories=reading.read_categories(facts),
+        categories=reading.read_categories(facts, afbits),
+        afbits=afbits,
         duals=tuple(duals[name] for name in sorted(duals)),
         co_occurrences=tuple(pairs[name] for name in sorted(pairs)),
         evidence_classes=reading.read_all(facts, "EvidenceClass", reading.read_evidence_class),

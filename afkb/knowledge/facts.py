@@ -1,22 +1,33 @@
-"""The statements of an ontology and its extensions, read once through owlready2."""
+"""The statements of an ontology and its extensions, read once."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+
+from pyoxigraph import BlankNode, NamedNode, RdfFormat, Triple, parse
 
 from afkb.errors import KnowledgeError
-from afkb.ontology.names import AFN, RDF_TYPE
+from afkb.ontology.names import AFN, ONTOLOGY_IRI, RDF_TYPE
+
+FROM_ROW = AFN + "fromRow"
+_OWL = "http://www.w3.org/2002/07/owl#"
+_FORMATS = {
+    ".owl": RdfFormat.RDF_XML,
+    ".rdf": RdfFormat.RDF_XML,
+    ".xml": RdfFormat.RDF_XML,
+    ".ttl": RdfFormat.TURTLE,
+    ".nt": RdfFormat.N_TRIPLES,
+}
 
 
 @dataclass(slots=True)
 class Facts:
     """Subject to property to values, with the file in which each subject is first met.
 
-    IRIs are plain strings; literals are told from them by `literals`.
+    IRIs and literals are plain strings; blank nodes' statements are left out.
     """
 
     values: dict[str, dict[str, list[str]]] = field(default_factory=dict)
@@ -33,9 +44,10 @@ class Facts:
 
     def one(self, subject: str, prop: str) -> str | None:
         """The value, or None; `KnowledgeError` where two files state different ones."""
-        found = self.many(subject, prop)
+        found = self.values.get(subject, {}).get(_full(prop), [])
         if len(found) > 1:
-            raise self.error(subject, f"{prop} is stated {len(found)} times: {', '.join(found)}")
+            values = ", ".join(sorted(found))
+            raise self.error(subject, f"{prop} is stated {len(found)} times: {values}")
         return found[0] if found else None
 
     def text(self, subject: str, prop: str, default: str | None = None) -> str:
@@ -68,52 +80,95 @@ class Facts:
         return number
 
     def error(self, subject: str, problem: str) -> KnowledgeError:
-        """The error to raise about a subject, with its file."""
-        file = self.file_of.get(subject, Path("?"))
-        return KnowledgeError(f"{file}: {subject.removeprefix(AFN)}: {problem}; mend it there")
+        """The error to raise about a subject, with its file and line."""
+        name = subject.removeprefix(AFN)
+        return KnowledgeError(f"{self.place(subject)}: {name}: {problem}; mend it there")
+
+    def place(self, subject: str) -> str:
+        """File and line where a subject is stated, as far as they can be told."""
+        file = self.file_of.get(subject)
+        row = self.values.get(subject, {}).get(FROM_ROW)
+        if file is None:
+            return row[0] if row else "?"
+        if file.suffix not in _FORMATS:
+            return f"{file.parent / row[0]}" if row else str(file)
+        line = _line_of(file, subject)
+        return f"{file}, line {line}" if line else str(file)
 
 
 def read_facts(files: Sequence[Path]) -> Facts:
-    """Load RDF/XML files, in order, into a world of their own and return what they state.
+    """What the files state, in order: RDF/XML, Turtle, and extensions in YAML or tables.
 
     Raises `KnowledgeError`, naming the file, where one is missing, can't be parsed, or imports
     an ontology that isn't among them.
     """
-    import owlready2
-
-    world = owlready2.World()
     facts = Facts()
-    try:
-        for file in files:
-            _collect(world, _load(world, file), file, facts)
-    finally:
-        world.close()
+    for file in files:
+        _collect(_statements(file), file, facts)
+    _check_imports(facts)
     return facts
 
 
-def _load(world: Any, file: Path) -> Any:
-    if not file.is_file():
+def _statements(file: Path) -> Iterable[tuple[str, str, str]]:
+    if not file.exists():
         raise KnowledgeError(f"{file}: no such ontology file")
+    if file.suffix not in _FORMATS:
+        from afkb.ontology.extension import extension_graph
+
+        return [(str(s), str(p), str(o)) for s, p, o in extension_graph(file)]
     try:
-        return world.get_ontology(file.resolve().as_uri()).load(only_local=True)
-    except Exception as error:  # owlready2 lets its parser's and its SQL layer's errors through
-        first = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+        triples = list(parse(path=str(file), format=_FORMATS[file.suffix]))
+    except (SyntaxError, ValueError, OSError) as error:
+        line = getattr(error, "lineno", None)
+        where = f", line {line}" if line else ""
         raise KnowledgeError(
-            f"{file}: not readable as RDF/XML: {first}; "
-            "save it as RDF/XML, and leave out imports of ontologies that are not beside it"
+            f"{file}{where}: not readable as {_FORMATS[file.suffix].name}: {error.args[0]}; "
+            "save it again as RDF/XML or Turtle"
         ) from error
+    return [_plain(t) for t in triples if not isinstance(t.subject, BlankNode)]
 
 
-def _collect(world: Any, ontology: Any, file: Path, facts: Facts) -> None:
-    graph = world.as_rdflib_graph().get_context(ontology)
-    if all(str(predicate) == RDF_TYPE for _, predicate, _ in graph.triples((None, None, None))):
-        raise KnowledgeError(f"{file}: states nothing; expected an ontology in RDF/XML")
-    for subject, predicate, value in graph.triples((None, None, None)):
-        properties = facts.values.setdefault(str(subject), {})
-        values = properties.setdefault(str(predicate), [])
-        if str(value) not in values:
-            values.append(str(value))
-        facts.file_of.setdefault(str(subject), file)
+def _plain(triple: Triple) -> tuple[str, str, str]:
+    subject, value = triple.subject, triple.object
+    assert isinstance(subject, NamedNode)
+    text = f"_:{value.value}" if isinstance(value, BlankNode) else getattr(value, "value", "")
+    return subject.value, triple.predicate.value, text
+
+
+def _collect(statements: Iterable[tuple[str, str, str]], file: Path, facts: Facts) -> None:
+    says_something = False
+    for subject, predicate, value in statements:
+        properties = facts.values.setdefault(subject, {})
+        values = properties.setdefault(predicate, [])
+        if value not in values:
+            values.append(value)
+        facts.file_of.setdefault(subject, file)
+        says_something = says_something or predicate != RDF_TYPE
+    if not says_something:
+        raise KnowledgeError(f"{file}: states nothing; expected an ontology or an extension of one")
+
+
+def _check_imports(facts: Facts) -> None:
+    read = set(facts.values) | {ONTOLOGY_IRI}
+    for subject, properties in facts.values.items():
+        for imported in properties.get(_OWL + "imports", ()):
+            if imported not in read and not imported.startswith(ONTOLOGY_IRI):
+                raise KnowledgeError(
+                    f"{facts.file_of[subject]}: imports {imported}, which is not among the files "
+                    "given; give its file too, or leave the import out"
+                )
+
+
+def _line_of(file: Path, subject: str) -> int | None:
+    """The line on which an OWL file speaks of a subject first, or None."""
+    name = subject.rsplit("#", 1)[-1].rsplit("/", 1)[-1]
+    marks = (f'"{subject}"', f'#{name}"', f"<{subject}>", f":{name} ")
+    try:
+        lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return None
+    about = [n for n, line in enumerate(lines, start=1) if any(mark in line for mark in marks)]
+    return about[0] if about else None
 
 
 def _full(prop: str) -> str:

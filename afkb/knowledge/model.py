@@ -1,7 +1,8 @@
 """What the knowledge base knows, as frozen plain data; units are SI, probabilities 0 to 1.
 
 Every item has its `name` (IRI fragment), `iri`, `label`, `status` (stated, published taxonomy,
-taken from data, recalled, proposed) and `source`, so that a conclusion can cite its axiom.
+taken from data, recalled, proposed), `source` and `place` (file and line), so that a conclusion can
+cite its axiom.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+from afkb.ontology.notation import write_afbit
 
 Range = tuple[float, float]
 """Lower and upper end, in the unit that the field's name tells."""
@@ -45,6 +48,7 @@ class Statement:
     label: str
     status: str
     source: str
+    place: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +79,12 @@ class Category(Statement):
 
     - `length_m`, `width_m`: longer and shorter horizontal extent; `height_m`: own vertical extent.
     - `top_height_m`: of its main upward surface above the floor, None where it is put on things.
-    - `afbits`: feature name to strength (paper §II.A).
+    - `mass_kg`: typical range, None where it makes no sense.
+    - `afbits`: feature name to strength, of the whole thing or of a part that stands for it, as
+      the seat does for a chair (paper §II.A). `AfNet.afbits` has all, part by part.
     - `movability`: `Static` or `Dynamic`; `matching_weight`: when maps are matched (§II.D.i).
+    - `moved`: `Fixed`, `RarelyMoved`, `OftenMoved` or `Carried`, None where nobody said.
+    - `shape`, `materials`, `traits`: what rules make afbits from.
     - `expected_number`: how many a home has on average.
     """
 
@@ -92,6 +100,42 @@ class Category(Statement):
     matching_weight: float
     expected_number: float
     afbits: Mapping[str, float]
+    definition: str = ""
+    mass_kg: Range | None = None
+    moved: str | None = None
+    shape: str | None = None
+    materials: tuple[str, ...] = ()
+    traits: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Afbit(Statement):
+    """One statement: a category, or a part of it, has an affordance (paper §II.A).
+
+    `part`: by which it affords it, None for the whole. `pose` and `scale` are the typical ones,
+    None where nobody said. `rules` made it. `independent_sources`: public tables, and the paper,
+    that speak for it; `reviewed`: whether a person judged it right.
+    """
+
+    category: str
+    feature: str
+    strength: float
+    part: str | None = None
+    pose: str | None = None
+    scale: str | None = None
+    rules: tuple[str, ...] = ()
+    independent_sources: int = 0
+    reviewed: bool = False
+
+    @property
+    def notation(self) -> str:
+        """The statement in one line, as in `Mug > ContainAbility = 0.95`."""
+        cells = {
+            name: str(value)
+            for name in ("category", "part", "feature", "pose", "scale", "strength")
+            if (value := getattr(self, name)) is not None
+        }
+        return write_afbit(cells)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TypedDict, TypeVar
 
 from afkb.knowledge.facts import Facts
 from afkb.knowledge.model import (
+    Afbit,
     Category,
     CoOccurrence,
     Dual,
@@ -20,14 +21,10 @@ from afkb.knowledge.model import (
     Statement,
     Trapezoid,
 )
-from afkb.ontology.names import DCTERMS, RDFS_LABEL, RELATIONS, SKOS, fragment
+from afkb.ontology.categories import movability_of
+from afkb.ontology.names import DCTERMS, KINDS, RDFS_LABEL, RELATIONS, SKOS, fragment
 
 T = TypeVar("T", bound=Statement)
-_KINDS = {
-    "StructuralAffordance": "structural",
-    "MaterialAffordance": "material",
-    "GraspAffordance": "grasp",
-}
 
 
 class _Common(TypedDict):
@@ -36,6 +33,7 @@ class _Common(TypedDict):
     label: str
     status: str
     source: str
+    place: str
 
 
 def _common(facts: Facts, iri: str) -> _Common:
@@ -46,6 +44,7 @@ def _common(facts: Facts, iri: str) -> _Common:
         label=facts.text(iri, RDFS_LABEL, default=name),
         status=facts.text(iri, "status", default="proposed"),
         source=facts.text(iri, DCTERMS + "source", default=str(facts.file_of[iri].name)),
+        place=facts.text(iri, "fromRow", default=facts.file_of[iri].name),
     )
 
 
@@ -64,7 +63,7 @@ def read_features(facts: Facts) -> Mapping[str, Feature]:
     """The affordance features of all three kinds, by name."""
     trapezoids = facts.of_type("Trapezoid")
     features: dict[str, Feature] = {}
-    for class_name, kind in _KINDS.items():
+    for kind, class_name in KINDS.items():
         for iri in facts.of_type(class_name):
             features[fragment(iri)] = Feature(
                 **_common(facts, iri),
@@ -95,27 +94,56 @@ def read_scale(facts: Facts, iri: str) -> Scale:
     return Scale(**_common(facts, iri), extent_m=_range(facts, iri, "extent"))
 
 
-def read_categories(facts: Facts) -> Mapping[str, Category]:
-    """The object categories with their afbits, by name."""
-    afbits: dict[str, dict[str, float]] = {}
+def read_afbits(facts: Facts) -> tuple[Afbit, ...]:
+    """The afbits, by category, part and feature; `KnowledgeError` where two say the same."""
+    found: dict[tuple[str, str, str], Afbit] = {}
+    known = set(facts.of_type("ObjectCategory"))
     for iri in facts.of_type("Afbit"):
         category = facts.text(iri, "ofCategory")
-        feature = fragment(facts.text(iri, "ofFeature"))
-        of_category = afbits.setdefault(category, {})
-        if feature in of_category:
-            raise facts.error(iri, f"a second afbit of the same category and {feature}")
-        of_category[feature] = facts.probability(iri, "strength")
-    known = set(facts.of_type("ObjectCategory"))
-    for category in sorted(set(afbits) - known):
-        raise facts.error(category, "has afbits but is no object category")
-    return read_all(facts, "ObjectCategory", lambda f, iri: _category(f, iri, afbits.get(iri, {})))
+        if category not in known:
+            raise facts.error(category, "has afbits but is no object category")
+        afbit = _afbit(facts, iri, fragment(category))
+        key = (afbit.category, afbit.part or "", afbit.feature)
+        if key in found:
+            raise facts.error(iri, f"a second afbit of the same category and {afbit.feature}")
+        found[key] = afbit
+    return tuple(found[key] for key in sorted(found))
+
+
+def _afbit(facts: Facts, iri: str, category: str) -> Afbit:
+    return Afbit(
+        **_common(facts, iri),
+        category=category,
+        feature=fragment(facts.text(iri, "ofFeature")),
+        strength=facts.probability(iri, "strength"),
+        part=_maybe(facts.one(iri, "ofPart")),
+        pose=_maybe(facts.one(iri, "pose")),
+        scale=_maybe(facts.one(iri, "scale")),
+        rules=tuple(fragment(rule) for rule in facts.many(iri, "byRule")),
+        independent_sources=int(facts.number(iri, "independentSources", default=0)),
+        reviewed=facts.text(iri, "reviewed", default="false") == "true",
+    )
+
+
+def read_categories(facts: Facts, afbits: Iterable[Afbit]) -> Mapping[str, Category]:
+    """The object categories with what they afford as wholes, by name."""
+    whole = {
+        fragment(iri)
+        for iri in facts.of_type("ObjectPart")
+        if facts.text(iri, "whole", default="false") == "true"
+    }
+    strengths: dict[str, dict[str, float]] = {}
+    for afbit in afbits:
+        if afbit.part is None or afbit.part in whole:
+            of_category = strengths.setdefault(afbit.category, {})
+            of_category[afbit.feature] = max(afbit.strength, of_category.get(afbit.feature, 0.0))
+    return read_all(
+        facts, "ObjectCategory", lambda f, iri: _category(f, iri, strengths.get(fragment(iri), {}))
+    )
 
 
 def _category(facts: Facts, iri: str, afbits: dict[str, float]) -> Category:
-    has_top = facts.one(iri, "topMin") is not None or facts.one(iri, "topMax") is not None
-    movability = fragment(facts.text(iri, "movability"))
-    if movability not in ("Static", "Dynamic"):
-        raise facts.error(iri, f"movability {movability} is neither Static nor Dynamic")
+    moved = _maybe(facts.one(iri, "moved"))
     return Category(
         **_common(facts, iri),
         broader=_maybe(facts.one(iri, SKOS + "broader")),
@@ -125,12 +153,26 @@ def _category(facts: Facts, iri: str, afbits: dict[str, float]) -> Category:
         length_m=_range(facts, iri, "length", required=True),
         width_m=_range(facts, iri, "width", required=True),
         height_m=_range(facts, iri, "height", required=True),
-        top_height_m=_range(facts, iri, "top", required=True) if has_top else None,
-        movability=movability,
+        top_height_m=_range_or_none(facts, iri, "top"),
+        movability=_movability(facts, iri, moved),
         matching_weight=facts.probability(iri, "matchingWeight"),
         expected_number=_positive(facts, iri, "expectedNumber"),
         afbits=MappingProxyType(dict(sorted(afbits.items()))),
+        definition=facts.text(iri, SKOS + "definition", default=""),
+        mass_kg=_range_or_none(facts, iri, "mass"),
+        moved=moved,
+        shape=_maybe(facts.one(iri, "shape")),
+        materials=tuple(fragment(m) for m in facts.many(iri, "madeOf")),
+        traits=tuple(fragment(t) for t in facts.many(iri, "hasTrait")),
     )
+
+
+def _movability(facts: Facts, iri: str, moved: str | None) -> str:
+    default = movability_of(moved) if moved else None
+    movability = fragment(facts.text(iri, "movability", default=default))
+    if movability not in ("Static", "Dynamic"):
+        raise facts.error(iri, f"movability {movability} is neither Static nor Dynamic")
+    return movability
 
 
 def read_rooms(facts: Facts) -> Mapping[str, RoomCategory]:
@@ -233,6 +275,11 @@ def _range(facts: Facts, iri: str, what: str, required: bool = False) -> Range:
     if low > high:
         raise facts.error(iri, f"{what} from {low} to {high} is empty")
     return (low, high)
+
+
+def _range_or_none(facts: Facts, iri: str, what: str) -> Range | None:
+    ends = (facts.one(iri, what + "Min"), facts.one(iri, what + "Max"))
+    return None if ends == (None, None) else _range(facts, iri, what, required=True)
 
 
 def _positive(facts: Facts, iri: str, prop: str, default: float | None = None) -> float:

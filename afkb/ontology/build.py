@@ -9,6 +9,7 @@ from rdflib import Graph, URIRef
 
 from afkb.errors import KnowledgeError
 from afkb.ontology.afbits import Afbit, draw_afbits
+from afkb.ontology.categories import completed
 from afkb.ontology.entity_classes import add_entity_classes
 from afkb.ontology.header import PREFIXES, add_external_terms, add_header
 from afkb.ontology.names import AFN
@@ -30,7 +31,8 @@ class Tables:
     def read(cls, folder: Path) -> Tables:
         """Read a folder of tables; `KnowledgeError` with file and line."""
         names = ("vocabulary", "afbits", "evidence", "review", *(t.name for t in TABLES))
-        return cls({name: read_table(folder, name) for name in names})
+        rows = {name: read_table(folder, name) for name in names}
+        return cls(rows | {"categories": [completed(row) for row in rows["categories"]]})
 
     def afbits(self) -> list[Afbit]:
         """Every afbit that the tables state or make, those that are held back among them."""
@@ -57,7 +59,12 @@ def build_ontology(folder: Path) -> Graph:
     rows = [afbit.row() for afbit in admitted]
     for row in rows:
         add_individual(graph, AFBITS, row)
-    whole = [r for r, a in zip(rows, admitted, strict=True) if not a.key[1] and a.kind != "grasp"]
+    as_wholes = {"", *(r["name"] for r in tables.rows["parts"] if r.get("whole") == "yes")}
+    whole = [
+        row
+        for row, afbit in zip(rows, admitted, strict=True)
+        if afbit.key[1] in as_wholes and afbit.kind != "grasp"
+    ]
     add_entity_classes(graph, tables.rows["categories"], tables.rows["category_groups"], whole)
     _check_references(graph)
     return graph

@@ -16,6 +16,14 @@ SOMETHING_ELSE = "SomethingElse"
 UNKNOWN_ROOM = "UnknownRoom"
 
 
+KINDS = {
+    "structural": "StructuralAffordance",
+    "material": "MaterialAffordance",
+    "grasp": "GraspAffordance",
+}
+"""The class of a feature, by its kind."""
+
+
 def fragment(iri: str) -> str:
     """The part of an IRI after `#` or the last `/`: the name by which this project calls it.
 

@@ -36,13 +36,15 @@ class Rule:
     @classmethod
     def read(cls, row: Row) -> Rule:
         """The rule of a row; `KnowledgeError`, with its place, for words that mean nothing."""
-        columns = [tuple(row.get(c).split()) for c in ("needs", "any_of", "unless")]
+        columns = [tuple(row.get(column).split()) for column in ("needs", "any_of", "unless")]
         for word in (w for column in columns for w in column):
             if not (_MEASURE.fullmatch(word) or _TOKEN.fullmatch(word)):
                 raise row.error(f"{word!r} is neither family:word nor a measure as in width_m<0.1")
         if not columns[0] and not columns[1]:
             raise row.error("a rule needs something: fill needs or any_of")
-        return cls(row, *columns, least=int(row.number("least")) if row.get("least") else 1)
+        needs, any_of, unless = columns
+        least = int(row.number("least")) if row.get("least") else 1
+        return cls(row, needs, any_of, unless, least)
 
     @property
     def name(self) -> str:

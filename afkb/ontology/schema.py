@@ -91,13 +91,6 @@ class Table:
         return [(property_of(column), Literal(repr(number), datatype=XSD.double))]
 
 
-KINDS = {
-    "structural": "StructuralAffordance",
-    "material": "MaterialAffordance",
-    "grasp": "GraspAffordance",
-}
-"""The class of a feature, by its kind."""
-
 TABLES = (
     Table("features", ""),
     Table("trapezoids", "Trapezoid", ("feature", "parameter_name")),

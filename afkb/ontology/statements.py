@@ -5,8 +5,8 @@ from __future__ import annotations
 from rdflib import Graph, Literal, URIRef
 from rdflib.namespace import OWL, RDF, RDFS, SKOS, XSD
 
-from afkb.ontology.names import AFN
-from afkb.ontology.schema import KINDS, Table
+from afkb.ontology.names import AFN, KINDS
+from afkb.ontology.schema import Table
 from afkb.ontology.tables import Row
 
 FROM_ROW = URIRef(AFN + "fromRow")

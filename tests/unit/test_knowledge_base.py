@@ -94,7 +94,7 @@ def test_a_bad_extension_is_refused_with_its_file(
     tmp_path: Path, base: AfNet, feature: str, strength: object, message: str
 ) -> None:
     path = extension(tmp_path, TEAPOT.format(feature=feature, strength=strength))
-    with pytest.raises(KnowledgeError, match=f"home.owl: .*{message}"):
+    with pytest.raises(KnowledgeError, match=f"home.owl, line [0-9]+: .*{message}"):
         _ = base.extended([path]).categories
 
 
