@@ -162,13 +162,13 @@ def _features(kb: AfNet, prior: Array) -> dict[str, Array]:
 
 
 def _inherited(kb: AfNet, category: Category) -> dict[str, float]:
-    """The category's afbits, and those of its broader categories that it doesn't state itself."""
+    """How often each feature is reported: the category's rates, else its afbits, else inherited."""
     bits: dict[str, float] = {}
     seen: set[str] = set()
     current: Category | None = category
     while current is not None and current.name not in seen:
         seen.add(current.name)
-        bits = {**current.afbits, **bits}
+        bits = {**current.afbits, **current.report_rates, **bits}
         current = kb.categories.get(current.broader) if current.broader else None
     return bits
 

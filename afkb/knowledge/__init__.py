@@ -2,6 +2,7 @@
 
 from afkb.knowledge.base import AfNet, bundled_ontology
 from afkb.knowledge.model import (
+    Afbit,
     Category,
     CoOccurrence,
     Dual,
@@ -19,6 +20,7 @@ __all__ = [
     "SOMETHING_ELSE",
     "UNKNOWN_ROOM",
     "AfNet",
+    "Afbit",
     "Category",
     "CoOccurrence",
     "Dual",

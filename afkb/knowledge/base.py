@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
+from threading import Lock
 
 from afkb.errors import KnowledgeError
+from afkb.knowledge.cache import cached, content_key
 from afkb.knowledge.content import Content, read_content
+from afkb.knowledge.facts import Facts, read_facts
 from afkb.knowledge.model import (
+    Afbit,
     Category,
     CoOccurrence,
     Dual,
@@ -31,14 +35,27 @@ def bundled_ontology() -> Path:
 class AfNet:
     """AfNet/AfRob as the rest of the program sees it (paper §II.A to §II.D).
 
-    Lazy: nothing is read before the first question. `ontology` replaces the bundled file;
-    `extensions` are RDF/XML files whose statements are added. Every bad file, missing term or
-    contradiction is a `KnowledgeError` that names the file.
+    Lazy: nothing is read before the first question; then all is, once, from a cache where the
+    same files were read before. Threads may share it. `ontology` replaces the bundled file;
+    `extensions` are files whose statements are added: YAML, tables, RDF/XML or Turtle. Every bad
+    file, missing term or contradiction is a `KnowledgeError` that names file and line.
     """
 
     def __init__(self, ontology: Path | None = None, extensions: Sequence[Path] = ()) -> None:
         self._ontology = Path(ontology) if ontology is not None else None
         self._extensions = tuple(Path(p) for p in extensions)
+        self._reading = Lock()
+
+    @classmethod
+    def load(cls, ontology: Path | None = None, extensions: Sequence[Path] = ()) -> AfNet:
+        """The knowledge base, read and checked now rather than at the first question.
+
+        >>> AfNet.load().categories["Mug"].scale
+        'Small'
+        """
+        base = cls(ontology, extensions)
+        _ = base._content
+        return base
 
     def extended(self, paths: Sequence[Path]) -> AfNet:
         """A knowledge base with these files added."""
@@ -49,9 +66,25 @@ class AfNet:
         """The ontology file and its extensions, in the order in which they are read."""
         return (self._ontology or bundled_ontology(), *self._extensions)
 
-    @cached_property
+    @property
     def _content(self) -> Content:
-        return read_content(self.files)
+        with self._reading:
+            return self._read
+
+    @cached_property
+    def _read(self) -> Content:
+        missing = [file for file in self.files if not file.exists()]
+        if missing:
+            raise KnowledgeError(f"{missing[0]}: no such ontology file")
+        return cached("content", self._key, lambda: read_content(self.files))
+
+    @cached_property
+    def _key(self) -> str:
+        return content_key(self.files)
+
+    @cached_property
+    def _facts(self) -> Facts:
+        return cached("facts", self._key, lambda: read_facts(self.files))
 
     @property
     def features(self) -> Mapping[str, Feature]:
@@ -62,6 +95,11 @@ class AfNet:
     def categories(self) -> Mapping[str, Category]:
         """Object categories by name, `SomethingElse` among them."""
         return self._content.categories
+
+    @property
+    def afbits(self) -> tuple[Afbit, ...]:
+        """Every afbit, by category, part and feature."""
+        return self._content.afbits
 
     @property
     def rooms(self) -> Mapping[str, RoomCategory]:
@@ -111,5 +149,5 @@ class AfNet:
     def statements_about(self, name: str) -> dict[str, list[str]]:
         """Everything stated of a term, by property: IRIs and literals as text, sorted."""
         subject = self.iri(name)
-        stated = self._content.facts.values.get(subject, {})
+        stated = self._facts.values.get(subject, {})
         return {prop: sorted(values) for prop, values in sorted(stated.items())}

@@ -25,7 +25,7 @@ from afkb.ontology.names import fragment
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """The typed items by name, the network's numbers, the IRI of every name, and the raw facts."""
+    """The typed items by name, the network's numbers, and the IRI of every name."""
 
     features: Mapping[str, Feature]
     scales: Mapping[str, Scale]
@@ -37,7 +37,6 @@ class Content:
     rooms: Mapping[str, RoomCategory]
     parameters: Mapping[str, float]
     iris: Mapping[str, str]
-    facts: Facts
 
 
 def read_content(files: Sequence[Path]) -> Content:
@@ -63,7 +62,6 @@ def read_content(files: Sequence[Path]) -> Content:
             }
         ),
         iris=MappingProxyType(_all_names(facts)),
-        facts=facts,
     )
     check_references(content, facts)
     return content

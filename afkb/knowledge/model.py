@@ -85,6 +85,8 @@ class Category(Statement):
     - `movability`: `Static` or `Dynamic`; `matching_weight`: when maps are matched (§II.D.i).
     - `moved`: `Fixed`, `RarelyMoved`, `OftenMoved` or `Carried`, None where nobody said.
     - `shape`, `materials`, `traits`: what rules make afbits from.
+    - `report_rates`: feature name to how often a detector reports it on such a thing, where that is
+      not the afbit's strength: a lid hides a concavity.
     - `expected_number`: how many a home has on average.
     """
 
@@ -106,6 +108,7 @@ class Category(Statement):
     shape: str | None = None
     materials: tuple[str, ...] = ()
     traits: tuple[str, ...] = ()
+    report_rates: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -137,12 +137,25 @@ def read_categories(facts: Facts, afbits: Iterable[Afbit]) -> Mapping[str, Categ
         if afbit.part is None or afbit.part in whole:
             of_category = strengths.setdefault(afbit.category, {})
             of_category[afbit.feature] = max(afbit.strength, of_category.get(afbit.feature, 0.0))
-    return read_all(
-        facts, "ObjectCategory", lambda f, iri: _category(f, iri, strengths.get(fragment(iri), {}))
-    )
+    rates = _report_rates(facts)
+
+    def read(facts: Facts, iri: str) -> Category:
+        return _category(facts, iri, strengths.get(fragment(iri), {}), rates.get(iri, {}))
+
+    return read_all(facts, "ObjectCategory", read)
 
 
-def _category(facts: Facts, iri: str, afbits: dict[str, float]) -> Category:
+def _report_rates(facts: Facts) -> dict[str, dict[str, float]]:
+    rates: dict[str, dict[str, float]] = {}
+    for iri in facts.of_type("ReportRate"):
+        of_category = rates.setdefault(facts.text(iri, "ofCategory"), {})
+        of_category[fragment(facts.text(iri, "ofFeature"))] = facts.probability(iri, "rate")
+    return rates
+
+
+def _category(
+    facts: Facts, iri: str, afbits: dict[str, float], rates: dict[str, float]
+) -> Category:
     moved = _maybe(facts.one(iri, "moved"))
     return Category(
         **_common(facts, iri),
@@ -164,6 +177,7 @@ def _category(facts: Facts, iri: str, afbits: dict[str, float]) -> Category:
         shape=_maybe(facts.one(iri, "shape")),
         materials=tuple(fragment(m) for m in facts.many(iri, "madeOf")),
         traits=tuple(fragment(t) for t in facts.many(iri, "hasTrait")),
+        report_rates=MappingProxyType(dict(sorted(rates.items()))),
     )
 
 
