@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from rdflib import BNode, Graph, Literal, URIRef
 from rdflib.namespace import OWL, RDF, RDFS, SKOS
 
-from afkb.ontology.names import AFN, SOMETHING_ELSE
+from afkb.ontology.names import AFN, BUNDLED, SOMETHING_ELSE, Names
 from afkb.ontology.tables import Row
 
 STRONG = 0.9
@@ -15,7 +15,11 @@ STRONG = 0.9
 
 
 def add_entity_classes(
-    graph: Graph, categories: Iterable[Row], groups: Iterable[Row], afbits: Iterable[Row]
+    graph: Graph,
+    categories: Iterable[Row],
+    groups: Iterable[Row],
+    afbits: Iterable[Row],
+    names: Names = BUNDLED,
 ) -> None:
     """Add `afn:MugEntity` and its like, below each other as their categories are.
 
@@ -23,7 +27,7 @@ def add_entity_classes(
     table affords support.
     """
     for row in groups:
-        _add_class(graph, row, "Entity")
+        _add_class(graph, row, "Entity", names)
     strong: dict[str, list[str]] = {}
     for afbit in afbits:
         if afbit.number("strength") >= STRONG:
@@ -31,13 +35,13 @@ def add_entity_classes(
     for row in categories:
         if row["name"] == SOMETHING_ELSE:
             continue
-        entity_class = _add_class(graph, row, class_name(row.get("broader")))
+        entity_class = _add_class(graph, row, class_name(row.get("broader")), names)
         for feature in sorted(set(strong.get(row["name"], []))):
             restriction = BNode(f"{row['name']}.{feature}")
             graph.add((entity_class, RDFS.subClassOf, restriction))
             graph.add((restriction, RDF.type, OWL.Restriction))
             graph.add((restriction, OWL.onProperty, URIRef(AFN + "affords")))
-            graph.add((restriction, OWL.hasValue, URIRef(AFN + feature)))
+            graph.add((restriction, OWL.hasValue, URIRef(names.iri(feature))))
 
 
 def class_name(category: str) -> str:
@@ -45,13 +49,13 @@ def class_name(category: str) -> str:
     return f"{category}Entity" if category else "Entity"
 
 
-def _add_class(graph: Graph, row: Row, parent: str) -> URIRef:
-    entity_class = URIRef(AFN + class_name(row["name"]))
+def _add_class(graph: Graph, row: Row, parent: str, names: Names) -> URIRef:
+    entity_class = URIRef(names.new(class_name(row["name"])))
     definition = f"What a map holds as a {row['label']}."
     graph.add((entity_class, RDF.type, OWL.Class))
-    graph.add((entity_class, RDFS.subClassOf, URIRef(AFN + parent)))
+    graph.add((entity_class, RDFS.subClassOf, URIRef(names.iri(parent))))
     graph.add((entity_class, RDFS.label, Literal(f"{row['label']} (entity)", lang="en")))
     graph.add((entity_class, SKOS.definition, Literal(definition, lang="en")))
     graph.add((entity_class, SKOS.example, Literal(f"a {row['label']} of a map", lang="en")))
-    graph.add((URIRef(AFN + row["name"]), URIRef(AFN + "entityClass"), entity_class))
+    graph.add((URIRef(names.new(row["name"])), URIRef(AFN + "entityClass"), entity_class))
     return entity_class

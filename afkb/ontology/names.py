@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
 AFN = "https://w3id.org/afkb/afnet#"
 ONTOLOGY_IRI = "https://w3id.org/afkb/afnet"
 VERSION = "0.1.0"
@@ -31,3 +34,30 @@ def fragment(iri: str) -> str:
     'Mug'
     """
     return iri.rsplit("#", 1)[-1].rsplit("/", 1)[-1]
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """Which IRI a name stands for: the ontology's own, or those of an extension first.
+
+    `own`: namespace of the terms that are stated. `known`: name to IRI, for names that stand for
+    a term of another namespace than the ontology's.
+
+    >>> Names("https://example.org/home#", {"Fern": "https://example.org/home#Fern"}).iri("Mug")
+    'https://w3id.org/afkb/afnet#Mug'
+    """
+
+    own: str = AFN
+    known: Mapping[str, str] = field(default_factory=dict)
+
+    def new(self, name: str) -> str:
+        """The IRI of a term that is stated here."""
+        return self.own + name
+
+    def iri(self, name: str) -> str:
+        """The IRI that a name stands for."""
+        return self.known.get(name, AFN + name)
+
+
+BUNDLED = Names()
+"""The names of the ontology itself."""

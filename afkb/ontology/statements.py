@@ -5,7 +5,7 @@ from __future__ import annotations
 from rdflib import Graph, Literal, URIRef
 from rdflib.namespace import OWL, RDF, RDFS, SKOS, XSD
 
-from afkb.ontology.names import AFN, KINDS
+from afkb.ontology.names import AFN, BUNDLED, KINDS, Names
 from afkb.ontology.schema import Table
 from afkb.ontology.tables import Row
 
@@ -13,9 +13,9 @@ FROM_ROW = URIRef(AFN + "fromRow")
 """Where a statement stands: file and line of its row."""
 
 
-def add_individual(graph: Graph, table: Table, row: Row) -> URIRef:
+def add_individual(graph: Graph, table: Table, row: Row, names: Names = BUNDLED) -> URIRef:
     """Add what a row states; `KnowledgeError`, with its place, where its name is taken."""
-    subject = URIRef(AFN + table.name_of(row))
+    subject = URIRef(names.new(table.name_of(row)))
     earlier = graph.value(subject, FROM_ROW)
     if earlier is not None or (subject, RDF.type, None) in graph:
         where = f", after {earlier}" if earlier is not None else ""
@@ -24,7 +24,7 @@ def add_individual(graph: Graph, table: Table, row: Row) -> URIRef:
     graph.add((subject, RDF.type, OWL.NamedIndividual))
     graph.add((subject, RDF.type, URIRef(AFN + class_of(table, row))))
     graph.add((subject, FROM_ROW, Literal(row.place, datatype=XSD.string)))
-    for predicate, value in table.statements(row):
+    for predicate, value in table.statements(row, names):
         graph.add((subject, predicate, value))
     if table.parts and not row.get("label"):
         text = ": ".join(row.get(part) for part in table.parts if row.get(part))

@@ -60,11 +60,11 @@ def read_table(folder: Path, name: str) -> list[Row]:
     """
     path = folder / f"{name}.csv"
     if path.is_file():
-        return _read_file(path, path.name)
+        return _read_checked(path, path.name)
     parts = sorted((folder / name).glob("*.csv"))
     if not parts:
         raise KnowledgeError(f"{path}: no such table; the ontology is built from it")
-    return [row for part in parts for row in _read_file(part, f"{name}/{part.name}")]
+    return [row for part in parts for row in _read_checked(part, f"{name}/{part.name}")]
 
 
 def by_name(rows: Iterable[Row]) -> dict[str, Row]:
@@ -78,15 +78,21 @@ def by_name(rows: Iterable[Row]) -> dict[str, Row]:
     return found
 
 
-def _read_file(path: Path, table: str) -> list[Row]:
+def read_file(path: Path, table: str) -> tuple[list[str], list[Row]]:
+    """The header and the rows of one CSV file, which messages call `table`; nothing is checked."""
     try:
-        with path.open(encoding="utf-8", newline="") as file:
+        with path.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.DictReader(file, strict=True)
             rows = [_row(table, reader, cells) for cells in reader]
     except (csv.Error, UnicodeDecodeError) as error:
         raise KnowledgeError(f"{table}: not readable as CSV: {error}; save it as UTF-8") from error
-    for row in rows:
-        if "status" in (reader.fieldnames or ()):
+    return list(reader.fieldnames or ()), rows
+
+
+def _read_checked(path: Path, table: str) -> list[Row]:
+    header, rows = read_file(path, table)
+    if "status" in header:
+        for row in rows:
             _check_provenance(row)
     return rows
 
