@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from rdflib import Literal, URIRef
 from rdflib.namespace import DCTERMS, RDFS, SKOS, XSD
 
-from afkb.ontology.names import AFN
+from afkb.ontology.names import AFN, BUNDLED, Names
 from afkb.ontology.tables import Row
 
 _TEXT = {
@@ -49,32 +49,36 @@ class Table:
     """How a table's rows become individuals.
 
     `class_name`: the class, or empty where the row's kind tells. `parts`: the columns that name
-    a row without a name of its own. `terms`: columns that name other terms here only.
+    a row without a name of its own, with `suffix` behind. `terms`: columns that name other terms
+    here only.
     """
 
     name: str
     class_name: str
     parts: tuple[str, ...] = ()
     terms: dict[str, str] = field(default_factory=dict)
+    suffix: str = ""
 
     def name_of(self, row: Row) -> str:
         """The individual's name: the IRI's fragment."""
         if not self.parts:
             return row["name"]
-        return ".".join(row.get(part) for part in self.parts if row.get(part))
+        cells = [*(row.get(part) for part in self.parts), self.suffix]
+        return ".".join(cell for cell in cells if cell)
 
-    def statements(self, row: Row) -> list[tuple[URIRef, URIRef | Literal]]:
+    def statements(self, row: Row, names: Names = BUNDLED) -> list[tuple[URIRef, URIRef | Literal]]:
         """What the row states of its individual, property and value."""
-        found: list[tuple[URIRef, URIRef | Literal]] = []
-        for column, cell in row.cells.items():
-            found += self._cell(row, column, cell)
-        return found
+        return [found for column in row.cells for found in self.cell_states(row, column, names)]
 
-    def _cell(self, row: Row, column: str, cell: str) -> list[tuple[URIRef, URIRef | Literal]]:
+    def cell_states(
+        self, row: Row, column: str, names: Names = BUNDLED
+    ) -> list[tuple[URIRef, URIRef | Literal]]:
+        """What one cell of the row states."""
+        cell = row[column]
         if column in _SKIPPED:
             return []
         if column in self.terms:
-            return [(URIRef(AFN + self.terms[column]), URIRef(AFN + cell))]
+            return [(URIRef(AFN + self.terms[column]), URIRef(names.iri(cell)))]
         if column in _TEXT:
             return [(_TEXT[column], Literal(cell, lang="en"))]
         if column in _LISTS:
@@ -82,7 +86,7 @@ class Table:
         if column in _PLAIN:
             return [(property_of(column), Literal(cell, datatype=XSD.string))]
         if column in _TERMS:
-            return [(_TERMS[column], URIRef(AFN + name)) for name in row.several(column)]
+            return [(_TERMS[column], URIRef(names.iri(name))) for name in row.several(column)]
         if column in _FLAGS:
             return [(property_of(column), Literal(cell == "yes", datatype=XSD.boolean))]
         number = row.number(column)
@@ -103,6 +107,7 @@ TABLES = (
     Table("category_groups", "CategoryGroup"),
     Table("categories", "ObjectCategory"),
     Table("rules", "AfbitRule"),
+    Table("report_rates", "ReportRate", ("category", "feature"), suffix="Rate"),
     Table("duals", "Dual"),
     Table("evidence_classes", "EvidenceClass"),
     Table("co_occurrences", "CoOccurrence"),
