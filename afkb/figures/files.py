@@ -12,9 +12,14 @@ from pathlib import Path
 from afkb.errors import KnowledgeError
 from afkb.figures.counts import Building, Counts, Pair, RoomTally, Source
 from afkb.figures.rows import Row, read_rows
+from afkb.figures.totals import Totals, totals_of
 
-PAIR_BUILDINGS = 3
-"""A pair is kept if so many buildings of its source hold it (or all, where there are fewer)."""
+MANY_BUILDINGS = 20
+"""A source of fewer buildings keeps all its pairs; for more, these two keep the files small."""
+PAIR_BUILDINGS = 5
+"""A pair is kept if so many buildings of its source hold it."""
+EVERYWHERE = 0.5
+"""What a larger share of a source's rooms hold is in no pair: it tells nothing of the rest."""
 SOURCES = ("source", "kind", "unit", "weight", "left_out", "categories")
 ROOMS = ("source", "number", "building", "room", "rooms", "objects")
 PAIRS = ("source", "category", "other", "buildings")
@@ -105,10 +110,17 @@ def _pair_rows(
     for key, building in sorted(counts.buildings.items()):
         for pair, both in building.pairs.items():
             held[key[0], pair][str(numbers[key])] = both
-    enough = {s: min(n, PAIR_BUILDINGS) for s, n in Counter(s for s, _ in numbers).items()}
+    many = {s for s, n in Counter(s for s, _ in numbers).items() if n >= MANY_BUILDINGS}
+    common = {source: _everywhere(totals) for source, totals in totals_of(counts).items()}
     for (source, pair), by_building in sorted(held.items()):
-        if len(by_building) >= enough[source]:
+        enough = len(by_building) >= PAIR_BUILDINGS and common[source].isdisjoint(pair)
+        if enough or source not in many:
             yield source, *pair, _joined(by_building, key=int)
+
+
+def _everywhere(totals: Totals) -> set[str]:
+    most = EVERYWHERE * totals.rooms.total()
+    return {c for c, rooms in totals.holding_anywhere.items() if rooms > most}
 
 
 def _support_rows(counts: Counts) -> Iterable[Sequence[object]]:

@@ -1,0 +1,152 @@
+"""How well figures from some homes tell what is in the rooms of others.
+
+    python -m bench.figures [COUNTS] [--source hm3d] [--folds 5] [--weights] [--json]
+
+Buildings are split into folds by a hash of their name; each fold's rooms are predicted from the
+other folds. A room is one yes-or-no answer per category of which the source has a name. Log loss
+(nats) and Brier score are summed over a room's categories and averaged over rooms, so that they
+don't shrink with the number of categories; the spread is the standard deviation over folds.
+
+`smoothed`: P(category | room category) as afkb gives it of the judged source. `unsmoothed`:
+successes by trials, kept off 0 and 1 by CLIP (how often that saved it from an infinite loss is
+told). `base rate`: the rate over all rooms, whatever their category. `pooled`: smoothed, with rooms
+and viewpoints of all real sources in one sum. `--weights` compares prior weights instead.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import math
+import sys
+from collections import defaultdict
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from afkb.figures import Figures, read_counts
+from afkb.figures.counts import Counts
+from afkb.figures.smoothing import ROOM_WEIGHT
+
+COUNTS = Path(__file__).parents[1] / "ontology" / "counts"
+CLIP = 1e-4
+WEIGHTS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
+Predict = Callable[[str, str], float]
+
+
+def fold_of(building: str, folds: int) -> int:
+    """The fold of a building: the same on every machine."""
+    return int(hashlib.sha256(building.encode()).hexdigest(), 16) % folds
+
+
+class Score:
+    """Losses of one predictor on one fold, summed."""
+
+    def __init__(self) -> None:
+        self.log_loss = self.brier = 0.0
+        self.rooms = self.surprises = 0
+
+    def add(self, p: float, yes: int, rooms: int) -> None:
+        """Judge a probability on rooms, of which some hold it."""
+        clipped = min(max(p, CLIP), 1 - CLIP)
+        self.log_loss -= yes * math.log(clipped) + (rooms - yes) * math.log1p(-clipped)
+        self.brier += yes * (1 - p) ** 2 + (rooms - yes) * p**2
+        self.surprises += yes if p <= 0 else rooms - yes if p >= 1 else 0
+
+
+def judge(counts: Counts, source: str, held_out: set[str], predict: Predict) -> Score:
+    """The predictor's losses on the held-out buildings."""
+    score = Score()
+    categories = sorted(counts.sources[source].categories)
+    for (name, building), content in counts.buildings.items():
+        if name != source or building not in held_out:
+            continue
+        for room, tally in content.rooms.items():
+            score.rooms += tally.rooms
+            for category in categories:
+                yes = tally.holding.get(category, 0)
+                score.add(predict(category, room), yes, tally.rooms)
+    return score
+
+
+def predictors(counts: Counts, source: str, weights: bool) -> dict[str, Predict]:
+    """What is compared, by name."""
+    own = counts.of([source])
+    if weights:
+        return {f"prior weight {w:g}": _in_room(Figures(own, room_weight=w)) for w in WEIGHTS}
+    alone, pooled = Figures(own), Figures(counts, rooms_first=False)
+
+    def unsmoothed(category: str, room: str) -> float:
+        figure = alone.object_in_room(category, room)
+        return figure.successes / figure.trials if figure.trials else alone.base_rate(category)
+
+    return {
+        "smoothed": _in_room(alone),
+        "unsmoothed": cache(unsmoothed),
+        "base rate": cache(lambda category, room: alone.base_rate(category)),
+        "pooled": _in_room(pooled),
+    }
+
+
+def _in_room(figures: Figures) -> Predict:
+    return cache(lambda category, room: figures.object_in_room(category, room).p)
+
+
+def evaluate(counts: Counts, source: str, folds: int, weights: bool) -> dict[str, object]:
+    buildings = sorted(name for origin, name in counts.buildings if origin == source)
+    scores: defaultdict[str, list[Score]] = defaultdict(list)
+    for fold in range(folds):
+        held_out = {b for b in buildings if fold_of(b, folds) == fold}
+        if not held_out or len(held_out) == len(buildings):
+            continue
+        compared = predictors(counts.without(held_out), source, weights)
+        for name, predict in compared.items():
+            scores[name].append(judge(counts, source, held_out, predict))
+    return {
+        "source": source,
+        "buildings": len(buildings),
+        "rooms": sum(s.rooms for s in next(iter(scores.values()))),
+        "categories": len(counts.sources[source].categories),
+        "folds": folds,
+        "prior_weight": ROOM_WEIGHT,
+        "per_room": {name: _summary(per_fold) for name, per_fold in scores.items()},
+    }
+
+
+def _summary(scores: list[Score]) -> dict[str, float]:
+    rooms = np.array([s.rooms for s in scores])
+    result: dict[str, float] = {}
+    for what in ("log_loss", "brier"):
+        total = np.array([getattr(s, what) for s in scores])
+        result[what] = round(float(total.sum() / rooms.sum()), 4)
+        result[f"{what}_spread"] = round(float((total / rooms).std()), 4)
+    return {**result, "impossible_but_seen": sum(s.surprises for s in scores)}
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("counts", nargs="?", type=Path, default=COUNTS)
+    parser.add_argument("--source", default="hm3d")
+    parser.add_argument("--folds", type=int, default=5)
+    parser.add_argument("--weights", action="store_true")
+    parser.add_argument("--json", action="store_true")
+    arguments = parser.parse_args()
+    counts = read_counts(arguments.counts)
+    result = evaluate(counts, arguments.source, arguments.folds, arguments.weights)
+    if arguments.json:
+        json.dump(result, sys.stdout, indent=1)
+        return 0
+    for key, value in result.items():
+        if key != "per_room":
+            sys.stdout.write(f"{key}: {value}\n")
+    for name, row in result["per_room"].items():
+        cells = "  ".join(f"{what} {value}" for what, value in row.items())
+        sys.stdout.write(f"{name:>18}  {cells}\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
