@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from afkb.cli.counting_command import count
+from afkb.cli.gathering_command import gather
 from afkb.cli.output import print_json, print_table, print_text, tell
 from afkb.cli.state import state_of
 from afkb.errors import KnowledgeError
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(no_args_is_help=True, help="Build, check and show the ontology.")
 app.command()(count)
+app.command()(gather)
 
 _Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
 

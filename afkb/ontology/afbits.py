@@ -13,7 +13,8 @@ from afkb.ontology.tables import Row
 
 Key = tuple[str, str, str]
 """Category, part (or an empty string), feature."""
-VERDICTS = ("right", "wrong")
+VERDICTS = ("right", "wrong", "missing")
+"""`missing`: it holds, and no rule said so when the verdict was written."""
 
 
 @dataclass(slots=True)

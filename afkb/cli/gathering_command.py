@@ -1,0 +1,40 @@
+"""`afkb ontology gather`: what public tables say of the categories, as evidence for the rules."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from afkb.cli.output import tell
+
+
+def gather(
+    public: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of public tables.")],
+    tables: Annotated[
+        Path | None,
+        typer.Option(help="Folder of tables.  [default: beside the bundled ontology]"),
+    ] = None,
+) -> None:
+    """Look up every name of `source_names` in the public tables; write what they say of it.
+
+    The same tables give the same bytes. `afkb ontology build` comes after it.
+
+    Example: afkb ontology gather knowledge --tables ontology/tables
+    """
+    from afkb.errors import KnowledgeError
+    from afkb.knowledge import bundled_ontology
+    from afkb.ontology.gather import gather as gathered
+    from afkb.ontology.tables import read_table
+
+    tables = tables or bundled_ontology().parent / "tables"
+    found = gathered(public, read_table(tables, "source_names"))
+    out = tables / "evidence"
+    try:
+        out.mkdir(exist_ok=True)
+        for source, text in found.items():
+            (out / f"{source}.csv").write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise KnowledgeError(f"{out}: can't be written: {error.strerror}; give --tables") from error
+    tell(f"{out}: {sum(text.count(chr(10)) - 1 for text in found.values())} facts")
