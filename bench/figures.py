@@ -5,7 +5,8 @@
 Buildings are split into folds by a hash of their name; each fold's rooms are predicted from the
 other folds. A room is one yes-or-no answer per category of which the source has a name. Log loss
 (nats) and Brier score are summed over a room's categories and averaged over rooms, so that they
-don't shrink with the number of categories; the spread is the standard deviation over folds.
+don't shrink with the number of categories; the spread is the standard deviation over folds. `more`
+is by how much a predictor's loss exceeds the first one's, fold by fold.
 
 `smoothed`: P(category | room category) as afkb gives it of the judged source. `unsmoothed`:
 successes by trials, kept off 0 and 1 by CLIP (how often that saved it from an infinite loss is
@@ -112,17 +113,23 @@ def evaluate(counts: Counts, source: str, folds: int, weights: bool) -> dict[str
         "categories": len(counts.sources[source].categories),
         "folds": folds,
         "prior_weight": ROOM_WEIGHT,
-        "per_room": {name: _summary(per_fold) for name, per_fold in scores.items()},
+        "per_room": {
+            name: _summary(per_fold, next(iter(scores.values())))
+            for name, per_fold in scores.items()
+        },
     }
 
 
-def _summary(scores: list[Score]) -> dict[str, float]:
+def _summary(scores: list[Score], first: list[Score]) -> dict[str, object]:
+    """Means over rooms, spreads over folds, and the same of the difference from the first."""
     rooms = np.array([s.rooms for s in scores])
-    result: dict[str, float] = {}
+    result: dict[str, object] = {}
     for what in ("log_loss", "brier"):
-        total = np.array([getattr(s, what) for s in scores])
-        result[what] = round(float(total.sum() / rooms.sum()), 4)
-        result[f"{what}_spread"] = round(float((total / rooms).std()), 4)
+        total, least = (np.array([getattr(s, what) for s in some]) for some in (scores, first))
+        result[what] = round(float(total.sum() / rooms.sum()), 3)
+        result[f"{what}_spread"] = round(float((total / rooms).std()), 3)
+        result[f"{what}_more"] = round(float((total - least).sum() / rooms.sum()), 3)
+        result[f"{what}_more_spread"] = round(float(((total - least) / rooms).std()), 3)
     return {**result, "impossible_but_seen": sum(s.surprises for s in scores)}
 
 
