@@ -1,0 +1,167 @@
+"""Extensions of the ontology, in YAML, tables or OWL: read, checked, and made into statements.
+
+    graph = extension_graph(Path("my-home.yaml"))
+
+Files build on each other: each may name the terms of those that are read before it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+from rdflib import Graph, Literal, URIRef
+from rdflib.namespace import DCTERMS, OWL, RDF, RDFS
+
+from afkb.errors import KnowledgeError
+from afkb.ontology.categories import completed
+from afkb.ontology.entity_classes import add_entity_classes
+from afkb.ontology.extension_afbits import afbit_rows, whole_afbits
+from afkb.ontology.extension_cells import check_cells
+from afkb.ontology.extension_check import check_statements
+from afkb.ontology.extension_defaults import complete
+from afkb.ontology.extension_owl import OWL_SUFFIXES, owl_statements
+from afkb.ontology.extension_problems import Problems
+from afkb.ontology.extension_rows import yaml_sheet
+from afkb.ontology.extension_sheet import Sheet, rows_of
+from afkb.ontology.extension_statements import of_sheet, terms_of
+from afkb.ontology.extension_tables import tables_sheet
+from afkb.ontology.extension_terms import Terms, bundled_terms
+from afkb.ontology.names import Names
+from afkb.ontology.schema import AFBITS
+from afkb.ontology.statements import add_individual
+
+YAML_SUFFIXES = (".yaml", ".yml")
+SUFFIXES = (*YAML_SUFFIXES, ".csv", *OWL_SUFFIXES)
+
+
+def extension_graph(path: Path, earlier: Sequence[Path] = ()) -> Graph:
+    """What an extension in YAML or tables states, with the afbits that the rules make for it.
+
+    `earlier`: what is read before it, the ontology first; nothing means the bundled ontology.
+    Raises one `KnowledgeError` that has a line for each problem, with file and mend.
+    """
+    stack = _Stack(earlier[0] if earlier else None)
+    for file in earlier[1:]:
+        stack.add(file)
+    sheet = stack.add(path)
+    if sheet is None:
+        raise KnowledgeError(f"{path}: OWL is read as it stands; give YAML or tables")
+    return _graph(sheet, stack.terms, stack.tables)
+
+
+def check_stack(files: Sequence[Path]) -> None:
+    """Raise `KnowledgeError` for everything that is wrong in extensions read one after another.
+
+    `files`: the ontology and its extensions, in order; OWL files are checked with the others.
+    """
+    stack = _Stack(files[0] if files else None)
+    found: list[str] = []
+    for path in files[1:]:
+        try:
+            stack.add(path)
+        except KnowledgeError as error:
+            found += str(error).splitlines()
+    if found:
+        raise KnowledgeError("\n".join(found))
+
+
+def extension_homes(path: Path) -> list[Path]:
+    """The tables of what homes hold that an extension brings, for the figures."""
+    if path.suffix in OWL_SUFFIXES:
+        return []
+    from afkb.knowledge import bundled_ontology
+
+    problems = Problems(path.parent)
+    sheet = _sheet(path, bundled_ontology().parent / "tables", problems)
+    problems.raise_any()
+    return sheet.homes
+
+
+class _Stack:
+    """The terms that are known so far, file by file."""
+
+    def __init__(self, ontology: Path | None) -> None:
+        from afkb.knowledge import bundled_ontology
+
+        bundled = bundled_ontology()
+        self.tables = bundled.parent / "tables"
+        if ontology is None or ontology.resolve() == bundled.resolve():
+            self.terms = _bundled_terms(bundled, bundled.stat().st_mtime_ns)
+        else:
+            self.terms = terms_of(owl_statements(ontology))
+
+    def add(self, path: Path) -> Sheet | None:
+        """Check a file and take in its terms; its rows, or None for OWL."""
+        problems = Problems(path.parent)
+        sheet = None
+        if path.suffix in OWL_SUFFIXES:
+            statements = owl_statements(path)
+        else:
+            sheet = _checked_sheet(path, self.terms, self.tables, problems)
+            statements = of_sheet(sheet, _names(sheet, self.terms), problems)
+        self.terms = check_statements(statements, self.terms, problems)
+        problems.raise_any()
+        return sheet
+
+
+@cache
+def _bundled_terms(ontology: Path, changed_ns: int) -> Terms:
+    return bundled_terms(ontology)
+
+
+def _checked_sheet(path: Path, terms: Terms, tables: Path, problems: Problems) -> Sheet:
+    sheet = _sheet(path, tables, problems)
+    problems.raise_any()
+    complete(sheet, terms.scales)
+    check_cells(sheet, problems)
+    problems.raise_any()
+    sheet.entries = [
+        replace(e, row=completed(e.row)) if e.table.name == "categories" else e
+        for e in sheet.entries
+    ]
+    return sheet
+
+
+def _sheet(path: Path, tables: Path, problems: Problems) -> Sheet:
+    """The rows of a file; without any, `problems` say why."""
+    if not path.exists():
+        raise KnowledgeError(f"{path}: no such extension; write one with `afkb ontology new`")
+    if path.is_dir() or path.suffix == ".csv":
+        return tables_sheet(path, tables, problems)
+    if path.suffix in YAML_SUFFIXES:
+        return yaml_sheet(path, problems)
+    raise KnowledgeError(
+        f"{path}: no extension: files of an ontology end in {', '.join(SUFFIXES)}; rename it"
+    )
+
+
+def _names(sheet: Sheet, terms: Terms) -> Names:
+    """The IRIs of names, as the sheet means them."""
+    return terms.resolver(sheet.iri, [e.name for e in sheet.entries if not e.table.parts])
+
+
+def _graph(sheet: Sheet, terms: Terms, tables: Path) -> Graph:
+    names = _names(sheet, terms)
+    graph = Graph()
+    _add_header(graph, sheet)
+    for entry in sheet.entries:
+        if entry.table is not AFBITS:
+            add_individual(graph, entry.table, entry.row, names)
+    afbits = afbit_rows(sheet, terms, tables)
+    for row in afbits:
+        add_individual(graph, AFBITS, row, names)
+    wholes = whole_afbits(afbits, sheet, terms, tables)
+    categories, groups = sheet.of("categories"), sheet.of("category_groups")
+    add_entity_classes(graph, rows_of(categories), rows_of(groups), wholes, names)
+    return graph
+
+
+def _add_header(graph: Graph, sheet: Sheet) -> None:
+    ontology = URIRef(sheet.iri.rstrip("#/"))
+    graph.add((ontology, RDF.type, OWL.Ontology))
+    graph.add((ontology, RDFS.label, Literal(sheet.label, lang="en")))
+    if sheet.definition:
+        graph.add((ontology, DCTERMS.description, Literal(sheet.definition, lang="en")))
