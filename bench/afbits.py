@@ -60,7 +60,11 @@ def now(rows: list[Row], tables: Tables) -> Score:
     """The score of today's rules on the same categories, by the same verdicts."""
     verdicts = {(r["category"], r.get("part"), r["feature"]): r["verdict"] for r in rows}
     categories = {row["category"] for row in rows}
-    made = {a.key for a in tables.afbits() if a.kind != "grasp" and a.key[0] in categories}
+    made = {
+        afbit.key
+        for afbit in tables.afbits()
+        if afbit.kind != "grasp" and afbit.key[0] in categories and not afbit.supplied
+    }
     found = Counter(verdicts.get(key, "unjudged") for key in made)
     holding = {key for key, verdict in verdicts.items() if verdict != "wrong"}
     return Score(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from afkb.ontology.notation import write_afbit
 from afkb.ontology.rules import PROJECT, Rule, family_of
@@ -14,7 +14,9 @@ from afkb.ontology.tables import Row
 Key = tuple[str, str, str]
 """Category, part (or an empty string), feature."""
 VERDICTS = ("right", "wrong", "missing")
-"""`missing`: it holds, and no rule said so when the verdict was written."""
+"""`missing`: it holds, and no rule said so when the verdict was written; so the row itself does."""
+SUPPLIED_STRENGTH = 0.8
+"""Strength of an afbit that a review supplied: it holds for most instances."""
 
 
 @dataclass(slots=True)
@@ -40,6 +42,11 @@ class Afbit:
         families = {family_of(token) for token in self.evidence} - {PROJECT}
         paper = self.stated is not None and self.stated["status"] == "stated"
         return sorted(families | ({"paper"} if paper else set()))
+
+    @property
+    def supplied(self) -> bool:
+        """Whether it stands on a review alone: no rule makes it, and no table states it."""
+        return not self.rules and self.stated is not None and "verdict" in self.stated.cells
 
     @property
     def status(self) -> str:
@@ -122,9 +129,19 @@ def draw_afbits(
     for row in verdicts:
         if row["verdict"] not in VERDICTS:
             raise row.error(f"verdict {row['verdict']!r} is none of: {', '.join(VERDICTS)}")
-        if (key := (row["category"], row.get("part"), row["feature"])) in drawn:
+        key = _key(row, known, kinds)
+        if row["verdict"] == "missing" and key not in drawn:
+            drawn[key] = Afbit(key, known[key[0]], kinds[key[2]], stated=_supplied(row))
+        if key in drawn:
             drawn[key].verdict = row
     return [drawn[key] for key in sorted(drawn)]
+
+
+def _supplied(row: Row) -> Row:
+    """What a review found missing, as a row of its own."""
+    reason = f"supplied by the review: {row['reason']}"
+    said = {"strength": str(SUPPLIED_STRENGTH), "status": "proposed", "source": reason}
+    return replace(row, cells=row.cells | said)
 
 
 def _apply(rule: Rule, subject: Subject, kinds: Mapping[str, str], drawn: dict[Key, Afbit]) -> None:
