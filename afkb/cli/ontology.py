@@ -37,6 +37,8 @@ def build(
 ) -> None:
     """Build the RDF/XML ontology from its tables; the same tables give the same bytes.
 
+    Its modules are written beside it, into the folder `modules`.
+
     Example: afkb ontology build --tables ontology/tables --out ontology/afnet.owl
     """
     from afkb.knowledge import bundled_ontology
@@ -45,7 +47,7 @@ def build(
     tables = tables or bundled_ontology().parent / "tables"
     out = out or bundled_ontology()
     try:
-        count = write_ontology(tables, out)
+        count = write_ontology(tables, out, out.parent / "modules")
     except OSError as error:
         raise KnowledgeError(f"{out}: can't be written: {error.strerror}; choose --out") from error
     tell(f"{out}: {count} statements")

@@ -11,7 +11,9 @@ from afkb.errors import KnowledgeError
 from afkb.ontology.afbits import Afbit, draw_afbits
 from afkb.ontology.categories import completed
 from afkb.ontology.entity_classes import add_entity_classes
+from afkb.ontology.entity_definitions import Definition, add_definitions
 from afkb.ontology.header import PREFIXES, add_external_terms, add_header
+from afkb.ontology.modules import add_modules, write_modules
 from afkb.ontology.names import AFN
 from afkb.ontology.rdfxml import to_rdfxml
 from afkb.ontology.rules import read_rules
@@ -19,6 +21,8 @@ from afkb.ontology.schema import AFBITS, TABLES
 from afkb.ontology.statements import FROM_ROW, add_individual, add_term
 from afkb.ontology.subjects import read_subjects
 from afkb.ontology.tables import Row, by_name, read_table
+
+_UNLIKE_OTHERS = ("vocabulary", "afbits", "evidence", "review", "entity_definitions")
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +34,7 @@ class Tables:
     @classmethod
     def read(cls, folder: Path) -> Tables:
         """Read a folder of tables; `KnowledgeError` with file and line."""
-        names = ("vocabulary", "afbits", "evidence", "review", *(t.name for t in TABLES))
+        names = (*_UNLIKE_OTHERS, *(t.name for t in TABLES))
         rows = {name: read_table(folder, name) for name in names}
         return cls(rows | {"categories": [completed(row) for row in rows["categories"]]})
 
@@ -66,17 +70,21 @@ def build_ontology(folder: Path) -> Graph:
         if afbit.key[1] in as_wholes and afbit.kind != "grasp"
     ]
     add_entity_classes(graph, tables.rows["categories"], tables.rows["category_groups"], whole)
+    add_definitions(graph, map(Definition.read, tables.rows["entity_definitions"]))
+    add_modules(graph)
     _check_references(graph)
     return graph
 
 
-def write_ontology(tables: Path, out: Path) -> int:
+def write_ontology(tables: Path, out: Path, modules: Path | None = None) -> int:
     """Build the ontology and write it as RDF/XML, the same bytes for the same tables.
 
-    Returns the number of statements.
+    `modules`: a folder for its modules, a file each. Returns the number of statements.
     """
     graph = build_ontology(tables)
     out.write_text(to_rdfxml(graph, PREFIXES), encoding="utf-8")
+    if modules is not None:
+        write_modules(graph, modules)
     return len(graph)
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from rdflib import Graph, Literal, URIRef
 from rdflib.namespace import DCTERMS, OWL, PROV, RDF, RDFS, SKOS, XSD
+from rdflib.term import Node
 
-from afkb.ontology.names import AFN, ONTOLOGY_IRI, VERSION
+from afkb.ontology.names import AFN, ONTOLOGY_IRI, PRIOR_VERSION, VERSION
 
 GEO = "http://www.opengis.net/ont/geosparql#"
 VANN = "http://purl.org/vocab/vann/"
@@ -19,12 +20,22 @@ PREFIXES = {
     "rdfs": str(RDFS),
     "skos": str(SKOS),
     "vann": VANN,
+    "xsd": str(XSD),
 }
+CREATED, MODIFIED = "2026-11-22", "2026-11-22"
+LICENCE = "https://creativecommons.org/licenses/by/4.0/"
+RECONSTRUCTION = (
+    "A reconstruction after the published descriptions of AfNet and AfRob: every statement "
+    "carries its status and source, and nothing here is AfNet's own published list."
+)
+_TITLE = "AfNet/AfRob affordance ontology for household robots, a reconstruction"
 _DESCRIPTION = (
     "Affordance features, object and room categories, and the relationships by which seen things "
-    "predict unseen ones, with the vocabulary of topological affordance maps. A reconstruction "
-    "after the published descriptions of AfNet and AfRob: every statement carries its status and "
-    "source, and nothing here is AfNet's own published list."
+    "predict unseen ones, with the vocabulary of topological affordance maps. " + RECONSTRUCTION
+)
+_CITATION = (
+    "After: Varadarajan and Vincze, Topological Mapping for Robot Navigation using Affordance "
+    "Features."
 )
 _ANNOTATIONS = (
     SKOS.definition, SKOS.example, SKOS.note, DCTERMS.source, DCTERMS.title, DCTERMS.description,
@@ -36,30 +47,33 @@ _OBJECTS = (SKOS.broader, PROV.wasGeneratedBy, PROV.wasDerivedFrom, URIRef(GEO +
 _DATA = (URIRef(GEO + "asWKT"),)
 
 
-def add_header(graph: Graph) -> None:
-    """Name, version, licence, dates and authorship of the ontology."""
-    ontology = URIRef(ONTOLOGY_IRI)
-    graph.add((ontology, RDF.type, OWL.Ontology))
-    graph.add((ontology, OWL.versionIRI, URIRef(f"{ONTOLOGY_IRI}/{VERSION}")))
-    graph.add((ontology, OWL.versionInfo, Literal(VERSION)))
-    texts = {
-        DCTERMS.title: "AfNet/AfRob affordance ontology for household robots, a reconstruction",
-        DCTERMS.description: _DESCRIPTION,
-        DCTERMS.creator: "The afkb authors",
-        DCTERMS.bibliographicCitation: (
-            "After: Varadarajan and Vincze, Topological Mapping for Robot Navigation using "
-            "Affordance Features."
-        ),
-        RDFS.label: "AfNet/AfRob reconstruction",
-    }
-    for predicate, text in texts.items():
-        graph.add((ontology, predicate, Literal(text, lang="en")))
-    licence = URIRef("https://creativecommons.org/licenses/by/4.0/")
-    graph.add((ontology, DCTERMS.license, licence))
-    graph.add((ontology, DCTERMS.created, Literal("2026-11-22", datatype=XSD.date)))
-    graph.add((ontology, DCTERMS.modified, Literal("2026-11-22", datatype=XSD.date)))
-    graph.add((ontology, URIRef(VANN + "preferredNamespacePrefix"), Literal("afn")))
-    graph.add((ontology, URIRef(VANN + "preferredNamespaceUri"), Literal(AFN)))
+def add_header(
+    graph: Graph, iri: str = ONTOLOGY_IRI, title: str = _TITLE, description: str = _DESCRIPTION
+) -> None:
+    """Name, version and the one before, licence, dates and authorship of an ontology file."""
+    for predicate, value in _header(iri, title, description):
+        graph.add((URIRef(iri), predicate, value))
+
+
+def _header(iri: str, title: str, description: str) -> list[tuple[URIRef, Node]]:
+    namespace = URIRef(VANN + "preferredNamespaceUri"), Literal(AFN)
+    return [
+        (RDF.type, OWL.Ontology),
+        (OWL.versionIRI, URIRef(f"{iri}/{VERSION}")),
+        (OWL.versionInfo, Literal(VERSION)),
+        (OWL.priorVersion, URIRef(f"{iri}/{PRIOR_VERSION}")),
+        (RDFS.label, Literal(title, lang="en")),
+        (RDFS.comment, Literal(RECONSTRUCTION, lang="en")),
+        (DCTERMS.title, Literal(title, lang="en")),
+        (DCTERMS.description, Literal(description, lang="en")),
+        (DCTERMS.creator, Literal("The afkb authors", lang="en")),
+        (DCTERMS.bibliographicCitation, Literal(_CITATION, lang="en")),
+        (DCTERMS.license, URIRef(LICENCE)),
+        (DCTERMS.created, Literal(CREATED, datatype=XSD.date)),
+        (DCTERMS.modified, Literal(MODIFIED, datatype=XSD.date)),
+        (URIRef(VANN + "preferredNamespacePrefix"), Literal("afn")),
+        namespace,
+    ]
 
 
 def add_external_terms(graph: Graph) -> None:

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 AFN = "https://w3id.org/afkb/afnet#"
 ONTOLOGY_IRI = "https://w3id.org/afkb/afnet"
-VERSION = "0.1.0"
+VERSION = "0.2.0"
+PRIOR_VERSION = "0.1.0"
 SKOS = "http://www.w3.org/2004/02/skos/core#"
 DCTERMS = "http://purl.org/dc/terms/"
 RDF_TYPE = "http://www.w3.org/1999/02/22-rdf-syntax-ns#type"

@@ -21,10 +21,14 @@ _ELSEWHERE = ("UnknownRoom", "SomethingElse")
 
 
 class Names(Protocol):
-    """What the store asks of the knowledge base: the IRI of a feature, category or room."""
+    """What the store asks of the knowledge base: IRIs of its terms, and the scale of a size."""
 
     def iri(self, name: str) -> str:
         """The IRI of a named individual."""
+        ...
+
+    def scale_of(self, size_xyz: tuple[float, float, float]) -> str:
+        """Name of the scale of a thing of that size, m."""
         ...
 
 
@@ -56,6 +60,10 @@ class Scribe:
             self.say(unknown, "rdfs:label", name)
             self.say(unknown, "rdfs:comment", "used by a plugin; no ontology in use describes it")
             return unknown
+
+    def scale_of(self, size_xyz: tuple[float, float, float]) -> NamedNode:
+        """The IRI of the scale of a thing of that size, m."""
+        return self.individual(self._names.scale_of(size_xyz))
 
     def say(self, subject: NamedNode, predicate: str, *values: Value | None) -> None:
         """State one value or several; None says nothing; floats are doubles, to 0.1 mm or 1e-4."""

@@ -51,6 +51,9 @@ def _box(scribe: Scribe, node: NamedNode, entity: Entity) -> None:
         scribe.say(node, f"afn:size{axis}", float(size))
     scribe.say(node, "afn:yaw", float(entity.yaw))
     scribe.say(node, "afn:extentKnown", bool(entity.extent_known))
+    if entity.extent_known and max(entity.size_xyz) > 0:
+        width, depth, height = (float(size) for size in entity.size_xyz)
+        scribe.say(node, "afn:scale", scribe.scale_of((width, depth, height)))
     if entity.polygon_xy is not None and len(entity.polygon_xy) > 1:
         scribe.geometry(node, polygon_wkt(entity.polygon_xy))
 

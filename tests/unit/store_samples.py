@@ -23,13 +23,17 @@ class Names:
     """Knows the IRIs of a few individuals, as a knowledge base does."""
 
     known = frozenset(
-        ("SupportAbility", "ContainAbility", "Table", "Desk", "Mug", "Bowl", "Kitchen", "Hallway")
-    )
+        ("SupportAbility", "ContainAbility", "Table", "Desk", "Mug", "Bowl", "Kitchen", "Hallway",
+         "Small", "Large")
+    )  # fmt: skip
 
     def iri(self, name: str) -> str:
         if name not in self.known:
             raise KeyError(name)
         return f"https://w3id.org/afkb/afnet#{name}"
+
+    def scale_of(self, size_xyz: tuple[float, float, float]) -> str:
+        return "Small" if max(size_xyz) < 0.35 else "Large"
 
 
 def square(x: float, y: float, half: float) -> np.ndarray:
