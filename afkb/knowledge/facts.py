@@ -102,20 +102,32 @@ def read_facts(files: Sequence[Path]) -> Facts:
     Raises `KnowledgeError`, naming the file, where one is missing, can't be parsed, or imports
     an ontology that isn't among them.
     """
+    missing = [file for file in files if not file.exists()]
+    if missing:
+        raise KnowledgeError(f"{missing[0]}: no such ontology file")
     facts = Facts()
+    plain = _extensions(files)
     for file in files:
-        _collect(_statements(file), file, facts)
+        _collect(plain.get(file) or _statements(file), file, facts)
     _check_imports(facts)
     return facts
 
 
-def _statements(file: Path) -> Iterable[tuple[str, str, str]]:
-    if not file.exists():
-        raise KnowledgeError(f"{file}: no such ontology file")
-    if file.suffix not in _FORMATS:
-        from afkb.ontology.extension import extension_graph
+def _extensions(files: Sequence[Path]) -> dict[Path, list[tuple[str, str, str]]]:
+    """The statements of extensions in YAML or tables; all extensions are checked on the way."""
+    if len(files) < 2:
+        return {}
+    from rdflib import URIRef
 
-        return [(str(s), str(p), str(o)) for s, p, o in extension_graph(file)]
+    from afkb.ontology.extension import read_stack
+
+    return {
+        path: [(str(s), str(p), str(o)) for s, p, o in graph if isinstance(s, URIRef)]
+        for path, graph in read_stack(files).items()
+    }
+
+
+def _statements(file: Path) -> Iterable[tuple[str, str, str]]:
     try:
         triples = list(parse(path=str(file), format=_FORMATS[file.suffix]))
     except (SyntaxError, ValueError, OSError) as error:

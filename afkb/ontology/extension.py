@@ -52,20 +52,25 @@ def extension_graph(path: Path, earlier: Sequence[Path] = ()) -> Graph:
     return _graph(sheet, stack.terms, stack.tables)
 
 
-def check_stack(files: Sequence[Path]) -> None:
-    """Raise `KnowledgeError` for everything that is wrong in extensions read one after another.
+def read_stack(files: Sequence[Path]) -> dict[Path, Graph]:
+    """What extensions in YAML or tables state, read one after another with those in OWL.
 
-    `files`: the ontology and its extensions, in order; OWL files are checked with the others.
+    `files`: the ontology and its extensions, in order. Raises one `KnowledgeError` that has a
+    line for everything that is wrong in any of them, OWL files included.
     """
     stack = _Stack(files[0] if files else None)
+    graphs: dict[Path, Graph] = {}
     found: list[str] = []
     for path in files[1:]:
         try:
-            stack.add(path)
+            sheet = stack.add(path)
+            if sheet is not None:
+                graphs[path] = _graph(sheet, stack.terms, stack.tables)
         except KnowledgeError as error:
             found += str(error).splitlines()
     if found:
         raise KnowledgeError("\n".join(found))
+    return graphs
 
 
 def extension_homes(path: Path) -> list[Path]:

@@ -22,6 +22,10 @@ from afkb.store.stored import StoredMap
 from afkb.store.vocabulary import PREFIXES, escaped
 
 ONTOLOGY_GRAPH = "urn:afkb:ontology"
+_OWL_FORMATS = dict.fromkeys((".owl", ".rdf", ".xml"), RdfFormat.RDF_XML) | {
+    ".ttl": RdfFormat.TURTLE,
+    ".nt": RdfFormat.N_TRIPLES,
+}
 
 
 def query(maps: Sequence[StoredMap], sparql: str, ontology: Iterable[Path] = ()) -> QueryResult:
@@ -30,8 +34,8 @@ def query(maps: Sequence[StoredMap], sparql: str, ontology: Iterable[Path] = ())
     The default graph is everything together; `GRAPH ?map { … }` tells maps apart: a map's graph
     is `urn:afkb:map:<name of its folder>`, the ontology's `urn:afkb:ontology`. Prefixes (`afn:`,
     `geo:`, `prov:`, `skos:`, … and `scene:` for the first map) need no declaration. `ontology`:
-    RDF/XML or Turtle files. `QueryError`, with line and column, for what can't be parsed, and
-    for updates and SERVICE.
+    the ontology and its extensions, in order. `QueryError`, with line and column, for what can't
+    be parsed, and for updates and SERVICE.
     """
     refuse_writing(sparql)
     prefixes = dict(PREFIXES) | ({"scene": maps[0].base} if maps else {})
@@ -53,8 +57,7 @@ def dataset(maps: Sequence[StoredMap], ontology: Iterable[Path] = ()) -> Store:
         name = graph_name(stored.folder, names)
         graph = NamedNode(name)
         store.bulk_extend(_in_graph(stored, graph))
-    for path in ontology:
-        load_ontology(store, path)
+    load_ontologies(store, tuple(ontology))
     return store
 
 
@@ -74,10 +77,24 @@ def _in_graph(stored: StoredMap, graph: NamedNode) -> Iterable[Quad]:
         yield Quad(quad.subject, quad.predicate, quad.object, graph)
 
 
+def load_ontologies(store: Store, files: Sequence[Path]) -> None:
+    """Add the ontology and its extensions; `KnowledgeError` where one can't be read."""
+    plain = [path for path in files if path.suffix not in _OWL_FORMATS]
+    if plain:
+        from afkb.ontology.extension import read_stack
+
+        for graph in read_stack(files).values():
+            text = graph.serialize(format="nt", encoding="utf-8")
+            form = RdfFormat.N_TRIPLES
+            store.bulk_load(input=text, format=form, to_graph=NamedNode(ONTOLOGY_GRAPH))
+    for path in files:
+        if path not in plain:
+            load_ontology(store, path)
+
+
 def load_ontology(store: Store, path: Path) -> None:
-    """Add an ontology file to the store; `KnowledgeError` where it can't be read."""
-    turtle = path.suffix in (".ttl", ".turtle")
-    form = RdfFormat.TURTLE if turtle else RdfFormat.RDF_XML
+    """Add an OWL file to the store; `KnowledgeError` where it can't be read."""
+    form = _OWL_FORMATS[path.suffix]
     try:
         store.bulk_load(path=str(path), format=form, to_graph=NamedNode(ONTOLOGY_GRAPH))
     except (SyntaxError, ValueError, OSError) as error:

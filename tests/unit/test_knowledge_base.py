@@ -8,10 +8,10 @@ from afkb.errors import KnowledgeError
 from afkb.knowledge import AfNet, bundled_ontology
 from ontology_samples import Copy, extension
 
-TEAPOT = """
-<owl:NamedIndividual rdf:about="https://example.org/home#Teapot">
+SAMOVAR = """
+<owl:NamedIndividual rdf:about="https://example.org/home#Samovar">
  <rdf:type rdf:resource="https://w3id.org/afkb/afnet#ObjectCategory"/>
- <rdfs:label xml:lang="en">teapot</rdfs:label>
+ <rdfs:label xml:lang="en">samovar</rdfs:label>
  <afn:scale rdf:resource="https://w3id.org/afkb/afnet#Small"/>
  <afn:movability rdf:resource="https://w3id.org/afkb/afnet#Dynamic"/>
  <afn:matchingWeight>0.3</afn:matchingWeight><afn:expectedNumber>1</afn:expectedNumber>
@@ -19,8 +19,8 @@ TEAPOT = """
  <afn:widthMin>0.13</afn:widthMin><afn:widthMax>0.18</afn:widthMax>
  <afn:heightMin>0.12</afn:heightMin><afn:heightMax>0.2</afn:heightMax>
 </owl:NamedIndividual>
-<afn:Afbit rdf:about="https://example.org/home#Teapot.{feature}">
- <afn:ofCategory rdf:resource="https://example.org/home#Teapot"/>
+<afn:Afbit rdf:about="https://example.org/home#Samovar.{feature}">
+ <afn:ofCategory rdf:resource="https://example.org/home#Samovar"/>
  <afn:ofFeature rdf:resource="https://w3id.org/afkb/afnet#{feature}"/>
  <afn:strength>{strength}</afn:strength>
 </afn:Afbit>
@@ -74,12 +74,12 @@ def test_terms_have_their_iri(base: AfNet) -> None:
 
 
 def test_an_extension_adds_a_category(tmp_path: Path, base: AfNet) -> None:
-    path = extension(tmp_path, TEAPOT.format(feature="ContainAbility", strength=0.9))
+    path = extension(tmp_path, SAMOVAR.format(feature="ContainAbility", strength=0.9))
     extended = base.extended([path])
-    assert extended.categories["Teapot"].afbits == {"ContainAbility": 0.9}
-    assert extended.iri("Teapot") == "https://example.org/home#Teapot"
+    assert extended.categories["Samovar"].afbits == {"ContainAbility": 0.9}
+    assert extended.iri("Samovar") == "https://example.org/home#Samovar"
     assert extended.files == (bundled_ontology(), path)
-    assert "Teapot" not in base.categories
+    assert "Samovar" not in base.categories
 
 
 @pytest.mark.parametrize(
@@ -93,7 +93,7 @@ def test_an_extension_adds_a_category(tmp_path: Path, base: AfNet) -> None:
 def test_a_bad_extension_is_refused_with_its_file(
     tmp_path: Path, base: AfNet, feature: str, strength: object, message: str
 ) -> None:
-    path = extension(tmp_path, TEAPOT.format(feature=feature, strength=strength))
+    path = extension(tmp_path, SAMOVAR.format(feature=feature, strength=strength))
     with pytest.raises(KnowledgeError, match=f"home.owl, line [0-9]+: .*{message}"):
         _ = base.extended([path]).categories
 
