@@ -18,6 +18,7 @@ from afkb.figures.smoothing import (
     dirichlet_means,
     gamma_mean,
     general_rate,
+    odds_shifted,
 )
 from afkb.figures.totals import Totals, totals_of
 
@@ -84,9 +85,10 @@ class Figures:
 
     Rooms and pairs are pooled over the real homes that were counted room by room, and only over
     sources that have a name for the categories asked for. Where those have no such room, sources
-    that count viewpoints answer, a viewpoint with its weight: to pool both makes each worse
-    (`python -m bench.figures`), so `rooms_first` is the default. Simulated homes are apart: ask
-    `figures.of("bddl")`. Supports are told by simulated homes only, so these answer there.
+    that count viewpoints tell by what odds ratio it differs from any room; one sum of rooms and
+    viewpoints makes both worse (`python -m bench.figures`), so `rooms_first` is the default.
+    Simulated homes are apart: ask `figures.of("bddl")`. Supports are told by simulated homes only,
+    so these answer there.
     """
 
     def __init__(
@@ -139,22 +141,32 @@ class Figures:
         totals = self._telling(category, lambda t: t.rooms[room])
         successes = _sum(totals, lambda t: t.holding[room, category])
         trials = _sum(totals, lambda t: t.rooms[room])
-        p = beta_mean(successes, trials, _base_rate(totals, category), self._room_weight)
-        return Figure(p, successes, trials, *_behind(totals, room))
+        anywhere = _base_rate(totals, category)
+        p = beta_mean(successes, trials, anywhere, self._room_weight)
+        whole = self._whole_behind(totals, category)
+        if whole:
+            p = odds_shifted(_base_rate(whole, category), p, anywhere)
+        return Figure(p, successes, trials, *_behind(totals, room, whole))
 
     def base_rate(self, category: str) -> float:
         """P(a room, of whatever category, holds a thing of the category)."""
         return _base_rate(self._telling(category, lambda t: t.named_rooms), category)
 
     def number_in_room(self, category: str, room: str) -> Rate:
-        """Mean number of the category's things in a room: Gamma-Poisson about the mean anywhere."""
+        """Mean number of the category's things in a room: Gamma-Poisson about the mean anywhere.
+
+        Where viewpoints answer, P(it holds one) times how many a room has that holds one.
+        """
         totals = self._telling(category, lambda t: t.rooms[room])
         things = _sum(totals, lambda t: t.things[room, category])
         rooms = _sum(totals, lambda t: t.rooms[room])
         anywhere = _sum(totals, lambda t: t.named_things[category]) + 0.5
         mean = anywhere / (_sum(totals, lambda t: t.named_rooms) + 1)
         smoothed = gamma_mean(things, rooms, mean, self._room_weight)
-        return Rate(smoothed, things, rooms, *_behind(totals, room))
+        whole = self._whole_behind(totals, category)
+        if whole:
+            smoothed = self.object_in_room(category, room).p * _number_where_any(whole, category)
+        return Rate(smoothed, things, rooms, *_behind(totals, room, whole))
 
     def object_with_object(self, category: str, given: str) -> Figure:
         """P(a room that holds the given category holds the other): Beta about the rate anywhere.
@@ -242,6 +254,12 @@ class Figures:
             )
         return totals
 
+    def _whole_behind(self, telling: list[Totals], category: str) -> list[Totals]:
+        """Who counted whole rooms with such things, where viewpoints tell; else nobody."""
+        if not self._rooms_first or any(t.source.weight == 1 for t in telling):
+            return []
+        return [t for t in self._knowing(category) if t.named_rooms and t.source.weight == 1]
+
     def _support_sources(self) -> tuple[str, ...]:
         return self._asked or SUPPORT_ORDER
 
@@ -263,9 +281,18 @@ def _base_rate(totals: Collection[Totals], category: str) -> float:
     )
 
 
-def _behind(totals: Collection[Totals], room: str) -> tuple[int, str]:
+def _number_where_any(totals: Collection[Totals], category: str) -> float:
+    holding = _sum(totals, lambda t: t.named_holding[category])
+    return (_sum(totals, lambda t: t.named_things[category]) + 0.5) / (holding + 0.5)
+
+
+def _behind(
+    totals: Collection[Totals], room: str, whole: Collection[Totals] = ()
+) -> tuple[int, str]:
     """How many buildings have such rooms, and whose they are."""
-    return sum(t.buildings_with[room] for t in totals), _named(t.source.name for t in totals)
+    about = f", about the rate of {_named(t.source.name for t in whole)}" if whole else ""
+    buildings = sum(t.buildings_with[room] for t in totals)
+    return buildings, _named(t.source.name for t in totals) + about
 
 
 def _named(sources: Iterator[str] | Mapping[str, object]) -> str:

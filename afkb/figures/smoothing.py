@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 ROOM_WEIGHT = 8.0
@@ -45,6 +46,18 @@ def gamma_mean(events: float, exposure: float, prior_mean: float, prior_weight: 
     return (events + prior_weight * prior_mean) / (exposure + prior_weight)
 
 
+def odds_shifted(rate: float, here: float, anywhere: float) -> float:
+    """A rate shifted by the odds ratio of two others: what another source sees more of here.
+
+    >>> round(odds_shifted(0.5, here=0.2, anywhere=0.2), 9)
+    0.5
+    >>> round(odds_shifted(0.5, here=0.5, anywhere=0.2), 9)
+    0.8
+    """
+    logit = _logit(rate) + _logit(here) - _logit(anywhere)
+    return 1 / (1 + math.exp(-logit))
+
+
 def dirichlet_means(
     counts: Mapping[str, float], shares: Mapping[str, float], prior_weight: float
 ) -> dict[str, float]:
@@ -57,3 +70,7 @@ def dirichlet_means(
     """
     total = sum(counts.values()) + prior_weight
     return {o: (counts.get(o, 0) + prior_weight * share) / total for o, share in shares.items()}
+
+
+def _logit(p: float) -> float:
+    return math.log(p) - math.log1p(-p)

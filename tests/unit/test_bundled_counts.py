@@ -37,7 +37,9 @@ def test_what_everybody_knows_of_homes_is_in_the_figures(counts: Counts) -> None
     assert figures.object_in_room("Toilet", "Bathroom").p > 0.7
     assert figures.object_in_room("Bed", "Kitchen").p < 0.05
     assert figures.object_with_object("Pillow", "Bed").p > 0.7
-    assert figures.object_in_room("Stairs", "Stairwell").source == "matterport"
+    assert figures.object_in_room("Stairs", "Stairwell").p > 0.7
+    assert figures.object_in_room("Chair", "Porch").source.startswith("matterport")
+    assert figures.object_in_room("Wall", "Hallway").p > 0.9, "though viewpoints name few walls"
     assert "Desk" in list(figures.support_of("Pen"))[:2]
     for thing in {thing for _, thing in counts.supports}:
         shares = figures.support_of(thing).values()

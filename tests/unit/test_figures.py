@@ -9,7 +9,13 @@ from hypothesis import strategies as st
 from afkb.errors import KnowledgeError
 from afkb.figures import Counts, Figures, write_counts
 from afkb.figures.counts import Source
-from afkb.figures.smoothing import beta_mean, dirichlet_means, gamma_mean, general_rate
+from afkb.figures.smoothing import (
+    beta_mean,
+    dirichlet_means,
+    gamma_mean,
+    general_rate,
+    odds_shifted,
+)
 from figures_samples import HM3D, MATTERPORT, counted
 
 HOMES = "building,room,category,objects\nH,r,bedroom,bed:1|pillow:4\nI,r,bedroom,bed:1\n"
@@ -39,7 +45,12 @@ def test_a_figure_tells_the_counts_behind_it(figures: Figures) -> None:
 def test_viewpoints_answer_where_no_room_was_counted(figures: Figures) -> None:
     assert figures.object_in_room("Bed", "Bedroom").source == "hm3d"
     porch = figures.object_in_room("Bed", "Porch")
-    assert (porch.source, porch.trials) == ("matterport", pytest.approx(0.2))
+    assert porch.source == "matterport, about the rate of hm3d"
+    assert porch.trials == pytest.approx(0.2)
+    seen = figures.of("matterport")
+    here, anywhere = seen.object_in_room("Bed", "Porch").p, seen.base_rate("Bed")
+    assert porch.p == pytest.approx(odds_shifted(figures.base_rate("Bed"), here, anywhere))
+    assert figures.number_in_room("Bed", "Porch").mean >= porch.p
     viewpoints = figures.of("matterport").object_in_room("Bed", "Bedroom")
     assert (viewpoints.source, viewpoints.trials) == ("matterport", pytest.approx(0.4))
     pooled = Figures(figures.counts, rooms_first=False).object_in_room("Bed", "Bedroom")
@@ -135,6 +146,16 @@ def test_one_more_success_raises_the_rate_and_one_more_failure_lowers_it(
     p = beta_mean(yes, yes + no, prior, weight)
     assert beta_mean(yes + 1, yes + no + 1, prior, weight) > p
     assert beta_mean(yes, yes + no + 1, prior, weight) < p
+
+
+@given(rates, rates, rates)
+def test_an_odds_ratio_shifts_a_rate_towards_where_more_is_seen(
+    rate: float, here: float, anywhere: float
+) -> None:
+    shifted = odds_shifted(rate, here, anywhere)
+    assert 0 < shifted < 1
+    assert (shifted > rate - 1e-9) if here >= anywhere else (shifted < rate + 1e-9)
+    assert odds_shifted(shifted, anywhere, here) == pytest.approx(rate, rel=1e-6)
 
 
 @given(numbers, st.integers(1, 1000), st.floats(0.01, 20), weights)
