@@ -14,7 +14,10 @@ class BadFrame(AfkbError):
 
 
 class KnowledgeError(AfkbError):
-    """An ontology or extension that can't be read or contradicts itself."""
+    """An ontology or extension that can't be read or contradicts itself.
+
+    Its text has a line for each problem, where several were found at once.
+    """
 
 
 class EvidenceError(AfkbError):

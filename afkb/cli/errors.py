@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 import typer
 
-from afkb.errors import AfkbError
+from afkb.errors import AfkbError, KnowledgeError
 
 FAILURE = 1
 INTERRUPTED = 130
@@ -46,5 +46,7 @@ def told_in_one_line(debug: bool) -> Iterator[None]:
 def _fail(message: str, debug: bool, error: BaseException) -> None:
     if debug:
         raise error
-    typer.echo(f"error: {' '.join(message.split())}", err=True)
+    lines = message.splitlines() if isinstance(error, KnowledgeError) else [message]
+    for line in lines:
+        typer.echo(f"error: {' '.join(line.split())}", err=True)
     raise typer.Exit(FAILURE) from error

@@ -11,6 +11,7 @@ import typer
 from afkb.cli.counting_command import count
 from afkb.cli.gathering_command import gather
 from afkb.cli.output import print_json, print_table, print_text, tell
+from afkb.cli.starter_command import new
 from afkb.cli.state import state_of
 from afkb.errors import KnowledgeError
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 app = typer.Typer(no_args_is_help=True, help="Build, check and show the ontology.")
 app.command()(count)
 app.command()(gather)
+app.command()(new)
 
 _Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
 
@@ -88,13 +90,17 @@ def check(
 def show(
     ctx: typer.Context,
     name: Annotated[str | None, typer.Argument(help="A term, as in `Mug`.")] = None,
+    extensions: Annotated[
+        list[Path] | None,
+        typer.Option("--ontology", metavar="FILE", help="An extension to show along; repeatable."),
+    ] = None,
     as_json: _Json = False,
 ) -> None:
     """Show one term with all that is stated of it, or the names of all.
 
     Example: afkb ontology show Mug
     """
-    base = state_of(ctx).host.knowledge_base
+    base = state_of(ctx).host.knowledge_base.extended(extensions or [])
     if name is None:
         names = {what: [item.name for item in items] for what, items in _items(base).items()}
         if as_json:
