@@ -1,0 +1,1 @@
+"""Quality gates of the ontology: shapes, pitfalls, reasoning and competency questions."""

@@ -1,0 +1,80 @@
+"""Reads ontology files as the graph that the gates look at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from pyoxigraph import BlankNode, NamedNode, RdfFormat, Triple, parse
+from pyoxigraph import Literal as OxLiteral
+from rdflib import BNode, Graph, Literal, URIRef
+from rdflib.namespace import XSD
+from rdflib.term import Node
+
+from afkb.errors import KnowledgeError
+
+FORMATS = {
+    ".owl": RdfFormat.RDF_XML,
+    ".rdf": RdfFormat.RDF_XML,
+    ".xml": RdfFormat.RDF_XML,
+    ".ttl": RdfFormat.TURTLE,
+    ".turtle": RdfFormat.TURTLE,
+    ".nt": RdfFormat.N_TRIPLES,
+}
+"""RDF by the file's suffix; anything else is an extension in YAML or tables."""
+
+
+def read_graph(path: Path) -> Graph:
+    """What a file states; `KnowledgeError`, with file and line, where it can't be read.
+
+    Plain and `xsd:string` literals come out alike, as RDF 1.1 has it.
+    """
+    if not path.exists():
+        raise KnowledgeError(f"{path}: no such ontology file")
+    if path.suffix not in FORMATS:
+        from afkb.ontology.extension import extension_graph
+
+        return plain(extension_graph(path))
+    # One scope a file: `_:1` of two files are two blank nodes. IRIs recur, so they are kept, too.
+    scope: dict[str, Node] = {}
+    graph = Graph()
+    try:
+        for triple in parse(path=str(path), format=FORMATS[path.suffix]):
+            graph.add(_as_rdflib(triple, scope))
+    except (SyntaxError, ValueError, OSError) as error:
+        line = getattr(error, "lineno", None)
+        where = f"{path}, line {line}" if line else str(path)
+        form = FORMATS[path.suffix].name
+        raise KnowledgeError(f"{where}: not readable as {form}: {error.args[0]}") from error
+    return graph
+
+
+def plain(triples: Iterable[tuple[Node, Node, Node]]) -> Graph:
+    """A copy whose strings are plain literals."""
+    graph = Graph()
+    for subject, predicate, value in triples:
+        if isinstance(value, Literal) and value.datatype == XSD.string:
+            value = Literal(str(value))
+        graph.add((subject, predicate, value))
+    return graph
+
+
+def _as_rdflib(triple: Triple, scope: dict[str, Node]) -> tuple[Node, Node, Node]:
+    return (
+        _node(triple.subject, scope),
+        _node(triple.predicate, scope),
+        _node(triple.object, scope),
+    )
+
+
+def _node(term: object, scope: dict[str, Node]) -> Node:
+    if isinstance(term, NamedNode | BlankNode):
+        key = str(term)
+        if key not in scope:
+            scope[key] = URIRef(term.value) if isinstance(term, NamedNode) else BNode()
+        return scope[key]
+    assert isinstance(term, OxLiteral)
+    if term.language:
+        return Literal(term.value, lang=term.language)
+    datatype = URIRef(term.datatype.value)
+    return Literal(term.value) if datatype == XSD.string else Literal(term.value, datatype=datatype)
