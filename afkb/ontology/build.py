@@ -10,6 +10,8 @@ from rdflib import Graph, URIRef
 from afkb.errors import KnowledgeError
 from afkb.ontology.afbits import Afbit, draw_afbits
 from afkb.ontology.categories import completed
+from afkb.ontology.counted import counted_rows
+from afkb.ontology.counted_pairs import counted_pairs
 from afkb.ontology.entity_classes import add_entity_classes
 from afkb.ontology.entity_definitions import Definition, add_definitions
 from afkb.ontology.header import PREFIXES, add_external_terms, add_header
@@ -17,7 +19,7 @@ from afkb.ontology.modules import add_modules, write_modules
 from afkb.ontology.names import AFN
 from afkb.ontology.rdfxml import to_rdfxml
 from afkb.ontology.rules import read_rules
-from afkb.ontology.schema import AFBITS, TABLES
+from afkb.ontology.schema import AFBITS, CO_OCCURRENCES, TABLES
 from afkb.ontology.statements import FROM_ROW, add_individual, add_term
 from afkb.ontology.subjects import read_subjects
 from afkb.ontology.tables import Row, by_name, read_table
@@ -69,11 +71,27 @@ def build_ontology(folder: Path) -> Graph:
         for row, afbit in zip(rows, admitted, strict=True)
         if afbit.key[1] in as_wholes and afbit.kind != "grasp"
     ]
+    _add_counted(graph, tables, admitted, folder.parent / "counts")
     add_entity_classes(graph, tables.rows["categories"], tables.rows["category_groups"], whole)
     add_definitions(graph, map(Definition.read, tables.rows["entity_definitions"]))
     add_modules(graph)
     _check_references(graph)
     return graph
+
+
+def _add_counted(graph: Graph, tables: Tables, afbits: list[Afbit], folder: Path) -> None:
+    """Add what was counted in homes, where there are counts beside the tables."""
+    if not folder.is_dir():
+        return
+    from afkb.figures import Figures
+
+    figures = Figures.load(folder)
+    for table, row in counted_rows(figures):
+        add_individual(graph, table, row)
+    categories = by_name(tables.rows["categories"])
+    taken = set(by_name(tables.rows["co_occurrences"]))
+    for row in counted_pairs(figures, categories, afbits, taken):
+        add_individual(graph, CO_OCCURRENCES, row)
 
 
 def write_ontology(tables: Path, out: Path, modules: Path | None = None) -> int:

@@ -64,9 +64,7 @@ def _composed(file: Path) -> Node | None:
         text = file.read_text(encoding="utf-8-sig")
         return yaml.compose(text, Loader=yaml.SafeLoader)
     except UnicodeDecodeError as error:
-        raise KnowledgeError(
-            f"{file}: not text in UTF-8 (byte {error.start}); save it so"
-        ) from error
+        raise KnowledgeError(f"{file}: not UTF-8 (byte {error.start}); save it as UTF-8") from error
     except OSError as error:
         raise KnowledgeError(f"{file}: can't be read: {error.strerror}") from error
     except yaml.MarkedYAMLError as error:

@@ -18,6 +18,7 @@ _TEXT = {
     "note": SKOS.note,
     "grounding": URIRef(AFN + "grounding"),
     "source": DCTERMS.source,
+    "choice": URIRef(AFN + "choice"),
 }
 _PLAIN = {"status", "grounding_status", "observability", "stands_on", "parameter_name", "relation"}
 _TERMS = {
@@ -39,7 +40,7 @@ _TERMS = {
     )
 }  # fmt: skip
 _FLAGS = {"whole", "reviewed"}
-_WHOLE_NUMBERS = {"independent_sources", "successes", "trials", "buildings"}
+_WHOLE_NUMBERS = {"independent_sources", "buildings"}
 _LISTS = {"examples": SKOS.example}
 _SKIPPED = {"name", "kind", "needs", "any_of", "unless", "least"}
 
@@ -95,6 +96,9 @@ class Table:
         return [(property_of(column), Literal(repr(number), datatype=XSD.double))]
 
 
+CO_OCCURRENCES = Table("co_occurrences", "CoOccurrence")
+"""Co-occurrences: rows of a table, and those that were counted in homes."""
+
 TABLES = (
     Table("features", ""),
     Table("trapezoids", "Trapezoid", ("feature", "parameter_name")),
@@ -110,7 +114,7 @@ TABLES = (
     Table("report_rates", "ReportRate", ("category", "feature"), suffix="Rate"),
     Table("duals", "Dual"),
     Table("evidence_classes", "EvidenceClass"),
-    Table("co_occurrences", "CoOccurrence"),
+    CO_OCCURRENCES,
     Table("rooms", "RoomCategory"),
     Table(
         "room_evidence",

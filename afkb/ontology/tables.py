@@ -24,8 +24,8 @@ class Row:
 
     @property
     def place(self) -> str:
-        """File and line, for messages."""
-        return f"{self.table}, line {self.line}"
+        """File and line, for messages; the file alone for what no single line says."""
+        return f"{self.table}, line {self.line}" if self.line else self.table
 
     def error(self, problem: str) -> KnowledgeError:
         """The error to raise about this row."""
