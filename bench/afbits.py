@@ -5,7 +5,8 @@
 A round is a set of categories drawn at random; every structural and material afbit that the rules
 of the day made of them got a verdict and a reason, and what they missed was added. `judged`: what
 was judged then. `now`: what today's rules, and rows stated by hand, make of the same categories,
-before the review itself holds anything back.
+before the review itself holds anything back. What a change of rules added to a round was judged
+afterwards, in a file of its own (`…-after`), and counts for `now` alone.
 """
 
 from __future__ import annotations
@@ -87,7 +88,10 @@ def main() -> None:
     for row in tables.rows["review"]:
         rounds[Path(row.table).stem[: len("round-1")]].append(row)
     result = {
-        title: {"judged": judged(rounds[stem]), "now": now(rounds[stem], tables)}
+        title: {
+            "judged": judged([r for r in rounds[stem] if "-after" not in r.table]),
+            "now": now(rounds[stem], tables),
+        }
         for title, stem in ROUNDS.items()
     }
     if arguments.json:

@@ -29,6 +29,10 @@ class Naming:
             return self.written.get(plain(name))
         return self.by_source.get(source, {}).get(name)
 
+    def with_labels(self, labels: Mapping[str, str]) -> Naming:
+        """As it is, with further names of ours and their labels that a person may write."""
+        return Naming(self.by_source, _written(labels, {}) | dict(self.written))
+
     def known(self, source: str) -> frozenset[str]:
         """Ours of which the source has a name."""
         return frozenset(self.by_source.get(source, {}).values())
@@ -55,6 +59,10 @@ class Names:
             categories=_naming(categories, _files(tables, "source_names"), "category"),
             rooms=_naming(rooms, _files(tables, "room_names"), "room"),
         )
+
+    def with_labels(self, categories: Mapping[str, str], rooms: Mapping[str, str]) -> Names:
+        """As they are, with what people may write for the terms of extensions: name to label."""
+        return Names(self.categories.with_labels(categories), self.rooms.with_labels(rooms))
 
 
 def plain(name: str) -> str:
@@ -109,6 +117,6 @@ def _written(
     for name, label in labels.items():
         written.setdefault(plain(label), name)
     for source in SOURCES:
-        for called, name in by_source[source].items():
+        for called, name in by_source.get(source, {}).items():
             written.setdefault(plain(called), name)
     return written

@@ -9,7 +9,7 @@ import numpy as np
 
 from afkb.errors import EvidenceError
 from afkb.inference.bands import Array
-from afkb.knowledge import AfNet
+from afkb.knowledge import AfNet, CoOccurrence
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -18,7 +18,8 @@ class RelationshipNetwork:
 
     - `duals`: dual to P(predicted is there | its evidence is there) (paper §II.D.ii).
     - `rules`: co-occurrence rule to (C,) P(predicted is there | category of the seen thing): the
-      rule's strength, or that of the strongest listed pair of the same feature (paper §II.D.iii).
+      rule's strength, or that of the strongest listed pair of the same feature whose predicted
+      category is of the rule's predicted class (paper §II.D.iii).
     """
 
     categories: tuple[str, ...]
@@ -33,7 +34,7 @@ class RelationshipNetwork:
         for rule in (c for c in kb.co_occurrences if c.is_rule):
             listed: dict[str | None, float] = {}
             for pair in kb.co_occurrences:
-                if not pair.is_rule and pair.feature == rule.feature:
+                if _modulates(pair, rule, kb):
                     strongest = max(pair.strength, listed.get(pair.evidence_category, 0.0))
                     listed[pair.evidence_category] = strongest
             rules[rule.name] = np.array([listed.get(n, rule.strength) for n in names])
@@ -58,6 +59,20 @@ class RelationshipNetwork:
         if not total > 0:
             raise EvidenceError("the category posterior of the seen thing is empty")
         return float(self.rules[name] @ weights / total)
+
+
+def _modulates(pair: CoOccurrence, rule: CoOccurrence, kb: AfNet) -> bool:
+    """Whether a listed pair speaks of what a rule predicts: a typical one is of its class."""
+    if pair.is_rule or pair.feature != rule.feature:
+        return False
+    category = kb.categories[pair.predicted_category or ""]
+    if category.top_height_m is None:
+        return False
+    length, width, height, top = (
+        sum(ends) / 2
+        for ends in (category.length_m, category.width_m, category.height_m, category.top_height_m)
+    )
+    return kb.evidence_classes[rule.predicted_class or ""].holds((length, width, height), top)
 
 
 def _list(names: Mapping[str, object]) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from threading import Lock
+from typing import TYPE_CHECKING
 
 from afkb.errors import KnowledgeError
 from afkb.knowledge.cache import cached, content_key
@@ -21,6 +22,10 @@ from afkb.knowledge.model import (
     RoomCategory,
     Scale,
 )
+from afkb.ontology.names import UNKNOWN_ROOM
+
+if TYPE_CHECKING:
+    from afkb.figures import Figures
 
 
 def bundled_ontology() -> Path:
@@ -130,6 +135,31 @@ class AfNet:
     def parameters(self) -> Mapping[str, float]:
         """Numbers that the network takes from the ontology, by name."""
         return self._content.parameters
+
+    @cached_property
+    def figures(self) -> Figures:
+        """What was counted in homes: the bundled counts, and homes that extensions bring."""
+        from afkb.figures import Figures
+
+        bundled = bundled_ontology().parent / "counts"
+        counts = sorted(bundled.glob("*.csv"))
+        figures = cached("figures", content_key(counts), lambda: Figures.load(bundled))
+        homes = self._homes()
+        return figures.plus(homes) if homes else figures
+
+    def _homes(self) -> Figures | None:
+        """The figures of the homes that extensions bring, whose terms they may name."""
+        from afkb.figures import Figures, Names, count_rooms
+        from afkb.ontology.extension import extension_homes
+
+        tables = [table for file in self._extensions for table in extension_homes(file)]
+        if not tables:
+            return None
+        names = Names.load(bundled_ontology().parent / "tables").with_labels(
+            {c.name: c.label for c in self.categories.values()},
+            {r.name: r.label for r in self.rooms.values() if r.name != UNKNOWN_ROOM},
+        )
+        return Figures(count_rooms(tables, names)[0])
 
     def scale_of(self, size_xyz: tuple[float, float, float]) -> str:
         """Name of the scale of a thing of that size, m: by its largest extent."""

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import TypeVar
+from typing import Any, TypeVar
 
 T = TypeVar("T")
 _KEPT_S = 30 * 24 * 3600.0
@@ -52,13 +52,21 @@ def cached(name: str, key: str, make: Callable[[], T]) -> T:
     folder that can be written to, everything is made afresh.
     """
     path = cache_folder() / f"{name}-{key}.pickle"
-    try:
-        found: T = pickle.loads(_own_bytes(path))
+    kept = _entry(path)
+    if kept:
+        found: T = kept[0]
         return found
+    made = make()
+    put(path, pickle.dumps(made, protocol=pickle.HIGHEST_PROTOCOL))
+    return made
+
+
+def _entry(path: Path) -> tuple[Any] | None:
+    """What an entry holds, in a tuple of its own; None where there is none that can be read."""
+    try:
+        return (pickle.loads(_own_bytes(path)),)
     except (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, IndexError):
-        made = make()
-        put(path, pickle.dumps(made, protocol=pickle.HIGHEST_PROTOCOL))
-        return made
+        return None
 
 
 def cached_file(name: str, key: str, make: Callable[[], bytes]) -> Path | None:
