@@ -120,7 +120,7 @@ def _bundled_terms(ontology: Path, changed_ns: int) -> Terms:
 def _checked_sheet(path: Path, terms: Terms, tables: Path, problems: Problems) -> Sheet:
     sheet = _sheet(path, tables, problems)
     problems.raise_any()
-    complete(sheet, terms.scales)
+    complete(sheet, terms)
     check_cells(sheet, problems)
     problems.raise_any()
     sheet.entries = [

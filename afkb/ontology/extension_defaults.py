@@ -6,22 +6,27 @@ import math
 from collections.abc import Callable, Sequence
 
 from afkb.errors import KnowledgeError
-from afkb.ontology.extension_sheet import Entry, Sheet, label_of
-from afkb.ontology.extension_terms import ScaleLimits
+from afkb.ontology.extension_sheet import ALL_TABLES, Entry, Sheet, label_of
+from afkb.ontology.extension_terms import ScaleLimits, Terms
+from afkb.ontology.names import UNKNOWN_ROOM
 from afkb.ontology.tables import Row
 
 _EXTENTS = ("length", "width", "height")
+ELSEWHERE = 0.05
+"""How many of a new evidence class a room holds that states no count (proposed)."""
 _MOVED = {"Small": "Carried"}
 """Moving habit of a category that states none, by scale; `Rarely` for the others."""
 
 
-def complete(sheet: Sheet, scales: Sequence[ScaleLimits]) -> None:
+def complete(sheet: Sheet, terms: Terms) -> None:
     """Fill what the rows of a sheet leave out.
 
     A category without a scale has that of its largest typical extent; one that stands on the
     floor without a top has its top at its height; what is small is carried, what is larger is
-    rarely moved; a home has one of it.
+    rarely moved; a home has one of it. A new evidence class that some room holds is rare in the
+    others. `terms`: those of the files before.
     """
+    scales = terms.scales
     rules: dict[str, Callable[[Entry], dict[str, str]]] = {
         "categories": lambda entry: _category(entry.row, scales),
         "duals": lambda entry: _relationship(entry.row, scales),
@@ -35,6 +40,29 @@ def complete(sheet: Sheet, scales: Sequence[ScaleLimits]) -> None:
         )
         for entry in sheet.entries
     ]
+    sheet.entries += _counts_elsewhere(sheet, terms)
+
+
+def _counts_elsewhere(sheet: Sheet, terms: Terms) -> list[Entry]:
+    """A count of each new evidence class for each room that states none.
+
+    Without it the network would take the mean of those that do, and the class would tell nothing.
+    """
+    stated = {(e.row.get("room"), e.row.get("evidence_class")) for e in sheet.of("room_evidence")}
+    counted = {evidence for _, evidence in stated}
+    rooms = sorted(terms.names("room") | {e.row.get("name") for e in sheet.of("rooms")})
+    found = []
+    for entry in sheet.of("evidence_classes"):
+        name = entry.row.get("name")
+        count = sheet.elsewhere.get(name, ELSEWHERE)
+        for room in rooms if name in counted else ():
+            if (room, name) not in stated and room != UNKNOWN_ROOM:
+                cells = {"room": room, "evidence_class": name, "expected_count": str(count)}
+                source = f"{entry.row.get('source')}: count of rooms that state none"
+                cells |= {"status": "proposed", "source": source}
+                row = Row(entry.row.table, entry.row.line, cells)
+                found.append(Entry(ALL_TABLES["room_evidence"], row))
+    return found
 
 
 def _provenance(entry: Entry, sheet: Sheet) -> Entry:
@@ -45,7 +73,7 @@ def _named(entry: Entry, sheet: Sheet) -> Entry:
     if entry.table.parts or not entry.row.get("name"):
         return entry
     label = entry.row.get("label") or label_of(entry.row["name"])
-    cells = {"label": label, "definition": f"What {sheet.name} calls {label}."}
+    cells = {"label": label, "definition": f"What {sheet.name} calls “{label}”."}
     if not entry.table.name.startswith(("duals", "co_occ")):
         cells["example"] = f"{label}, as {sheet.name} has it"
     return entry.filled(cells)

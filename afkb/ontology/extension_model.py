@@ -93,13 +93,18 @@ class CoOccurrence(_Relationship):
 
 
 class EvidenceClass(Entry):
-    """An affordance at a size and height, which is counted to tell rooms apart."""
+    """An affordance at a size and height, which is counted to tell rooms apart.
+
+    `counts`: how many a room holds on average; `elsewhere`: how many any other room does.
+    """
 
     feature: Word
     length_m: OpenPair | None = None
     width_m: OpenPair | None = None
     top_m: OpenPair | None = None
     dispersion: float | None = None
+    counts: dict[Word, float] = {}
+    elsewhere: float | None = None
 
 
 class Room(Entry):

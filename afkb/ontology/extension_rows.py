@@ -7,7 +7,15 @@ from pathlib import Path
 from typing import Any
 
 from afkb.errors import KnowledgeError
-from afkb.ontology.extension_model import SECTIONS, Category, Entry, Extension, Feature, Room
+from afkb.ontology.extension_model import (
+    SECTIONS,
+    Category,
+    Entry,
+    EvidenceClass,
+    Extension,
+    Feature,
+    Room,
+)
 from afkb.ontology.extension_problems import Problems
 from afkb.ontology.extension_sheet import ALL_TABLES, NAMESPACE, Sheet, number
 from afkb.ontology.extension_sheet import Entry as SheetEntry
@@ -22,7 +30,7 @@ _PAIRS = {
     "size_m": ("size_x_typical_m", "size_y_typical_m"),
 }
 _COLUMNS = {"evidence_bottom_m": "evidence_bottom_min_m"}
-_OWN_ROWS = {"afbits", "parameters", "holds"}
+_OWN_ROWS = {"afbits", "parameters", "holds", "counts", "elsewhere"}
 """Keys that become rows of other tables."""
 
 
@@ -40,6 +48,11 @@ def yaml_sheet(file: Path, problems: Problems) -> Sheet:
         definition=extension.definition or "",
     )
     sheet.entries = list(_Rows(document, extension, problems).entries())
+    sheet.elsewhere = {
+        name: entry.elsewhere
+        for name, entry in extension.evidence_classes.items()
+        if entry.elsewhere is not None
+    }
     for index, home in enumerate(extension.homes):
         path = file.parent / home
         if not path.is_file():
@@ -88,8 +101,12 @@ class _Rows:
                 yield self._row("trapezoids", cells, (*path, "parameters", parameter))
         elif isinstance(entry, Room):
             for evidence, count in entry.holds.items():
-                cells = {"room": name, "evidence_class": evidence, "expected_count": number(count)}
+                cells = _count(name, evidence, count)
                 yield self._row("room_evidence", cells | said, (*path, "holds", evidence))
+        elif isinstance(entry, EvidenceClass):
+            for room, count in entry.counts.items():
+                cells = _count(room, name, count)
+                yield self._row("room_evidence", cells | said, (*path, "counts", room))
 
     def _afbits(
         self,
@@ -134,6 +151,10 @@ def _cells(key: str, value: Any) -> Iterator[tuple[str, str]]:
         yield _COLUMNS.get(key, key), number(value)
     else:
         yield key, " ".join(str(value).split())
+
+
+def _count(room: str, evidence: str, count: float) -> dict[str, str]:
+    return {"room": room, "evidence_class": evidence, "expected_count": number(count)}
 
 
 def _provenance(entry: Entry) -> dict[str, str]:

@@ -42,7 +42,10 @@ class Entry:
 
 @dataclass(slots=True)
 class Sheet:
-    """An extension: its name, its namespace, its rows, and the tables of its homes."""
+    """An extension: its name, its namespace, its rows, and the tables of its homes.
+
+    `elsewhere`: evidence class to the count of rooms that state none, where the file says it.
+    """
 
     file: Path
     name: str
@@ -51,6 +54,7 @@ class Sheet:
     definition: str
     entries: list[Entry] = field(default_factory=list)
     homes: list[Path] = field(default_factory=list)
+    elsewhere: dict[str, float] = field(default_factory=dict)
 
     def of(self, *tables: str) -> list[Entry]:
         """The rows of these tables."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from afkb.ontology.names import AFN, Names
-from afkb.ontology.tables import read_table
+from afkb.ontology.tables import Row, read_table
 
 WORD_OF = {
     "StructuralAffordance": "feature",
@@ -107,21 +107,30 @@ class Terms:
 
 
 def bundled_terms(ontology: Path) -> Terms:
-    """The terms of the bundled ontology, from the tables beside it: quicker than from its OWL."""
-    terms = Terms()
-    tables = ontology.parent / "tables"
-    for table, word in _TABLES.items():
-        for row in read_table(tables, table):
-            place = f"the bundled ontology ({row.place})"
-            cells = {c: row.get(c) for c in ("broader", "scale", "kind")}
-            terms.add(Term(row["name"], AFN + row["name"], word, place, **cells))
-            if table == "scales":
-                limits = row.get("extent_min_m"), row.get("extent_max_m")
-                terms.scales.append(scale_limits(row["name"], *limits))
+    """The terms of the bundled ontology, from the tables beside it: quicker than from its OWL.
+
+    A row of a table that is not in the ontology yet is left out.
+    """
     text = ontology.read_text(encoding="utf-8")
-    for name in re.findall(rf'rdf:about="{re.escape(AFN)}([\w-]+\.[\w.-]+)"', text):
-        terms.stated[tuple(name.split("."))] = "the bundled ontology"
+    stated = set(re.findall(rf'rdf:about="{re.escape(AFN)}([^"]+)"', text))
+    terms = Terms()
+    for table, word in _TABLES.items():
+        for row in read_table(ontology.parent / "tables", table):
+            if row["name"] in stated:
+                _take_in(row, word, terms)
+    terms.stated = {
+        tuple(name.split(".")): "the bundled ontology" for name in stated if "." in name
+    }
     return terms
+
+
+def _take_in(row: Row, word: str, terms: Terms) -> None:
+    place = f"the bundled ontology ({row.place})"
+    cells = {c: row.get(c) for c in ("broader", "scale", "kind")}
+    terms.add(Term(row["name"], AFN + row["name"], word, place, **cells))
+    if word == "scale":
+        limits = row.get("extent_min_m"), row.get("extent_max_m")
+        terms.scales.append(scale_limits(row["name"], *limits))
 
 
 def scale_limits(name: str, least: str, greatest: str) -> ScaleLimits:
