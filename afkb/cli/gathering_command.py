@@ -27,6 +27,7 @@ def gather(
     from afkb.knowledge import bundled_ontology
     from afkb.ontology.gather import gather as gathered
     from afkb.ontology.tables import read_table
+    from afkb.ontology.writing import put_whole
 
     tables = tables or bundled_ontology().parent / "tables"
     found = gathered(public, read_table(tables, "source_names"))
@@ -34,7 +35,7 @@ def gather(
     try:
         out.mkdir(exist_ok=True)
         for source, text in found.items():
-            (out / f"{source}.csv").write_text(text, encoding="utf-8")
+            put_whole(out / f"{source}.csv", text)
     except OSError as error:
         raise KnowledgeError(f"{out}: can't be written: {error.strerror}; give --tables") from error
     tell(f"{out}: {sum(text.count(chr(10)) - 1 for text in found.values())} facts")

@@ -23,6 +23,7 @@ from afkb.ontology.schema import AFBITS, CO_OCCURRENCES, TABLES
 from afkb.ontology.statements import FROM_ROW, add_individual, add_term
 from afkb.ontology.subjects import read_subjects
 from afkb.ontology.tables import Row, by_name, read_table
+from afkb.ontology.writing import one_writer, put_whole
 
 _UNLIKE_OTHERS = ("vocabulary", "afbits", "evidence", "review", "entity_definitions")
 
@@ -97,12 +98,14 @@ def _add_counted(graph: Graph, tables: Tables, afbits: list[Afbit], folder: Path
 def write_ontology(tables: Path, out: Path, modules: Path | None = None) -> int:
     """Build the ontology and write it as RDF/XML, the same bytes for the same tables.
 
-    `modules`: a folder for its modules, a file each. Returns the number of statements.
+    `modules`: a folder for its modules, a file each. One process writes at a time, and readers
+    meet the old file or the new. Returns the number of statements.
     """
-    graph = build_ontology(tables)
-    out.write_text(to_rdfxml(graph, PREFIXES), encoding="utf-8")
-    if modules is not None:
-        write_modules(graph, modules)
+    with one_writer(out):
+        graph = build_ontology(tables)
+        put_whole(out, to_rdfxml(graph, PREFIXES))
+        if modules is not None:
+            write_modules(graph, modules)
     return len(graph)
 
 

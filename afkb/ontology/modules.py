@@ -13,6 +13,7 @@ from rdflib.term import Node
 from afkb.ontology.header import PREFIXES, RECONSTRUCTION, add_header
 from afkb.ontology.names import AFN, KINDS, ONTOLOGY_IRI, VERSION
 from afkb.ontology.rdfxml import to_rdfxml
+from afkb.ontology.writing import put_whole
 
 CATALOG = "catalog-v001.xml"
 
@@ -182,10 +183,10 @@ def write_modules(graph: Graph, folder: Path) -> list[Path]:
     written = []
     for name, part in split(graph).items():
         path = folder / f"{name}.owl"
-        path.write_text(to_rdfxml(part, PREFIXES), encoding="utf-8")
+        put_whole(path, to_rdfxml(part, PREFIXES))
         written.append(path)
     catalog = folder / CATALOG
-    catalog.write_text(_catalog(), encoding="utf-8")
+    put_whole(catalog, _catalog())
     return [*written, catalog]
 
 

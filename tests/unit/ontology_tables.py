@@ -1,43 +1,39 @@
-"""A small copy of the ontology's tables: a few categories, so that a build takes no time."""
+"""A small folder of tables, as the ontology is built from, for tests of rules and afbits."""
 
 from __future__ import annotations
 
-import csv
-import shutil
-from collections.abc import Callable, Iterable
-from pathlib import Path
+from afkb.ontology.subjects import Subject, measures_of
+from afkb.ontology.tables import Row
 
-from afkb.knowledge import bundled_ontology
-
-CATEGORIES = frozenset((
-    "SomethingElse", "Cup", "Mug", "Table", "KitchenTable", "Desk", "Chair", "Bed", "Book", "Pen",
-    "Mirror", "StandingMirror", "Bowl", "Counter", "Ball", "Bathtub", "TrashCan", "Doorframe",
-    "Door", "Television", "Display", "Carton", "Tetrapak", "Canister", "Bottle", "WaterBottle",
-))  # fmt: skip
-_ABOUT_CATEGORIES = ("category", "evidence_category", "predicted_category", "object", "given")
+_CUP = {
+    "name": "Cup", "scale": "Small", "stands_on": "Support", "moved": "Carried",
+    "length_min_m": "0.06", "length_max_m": "0.14", "width_min_m": "0.06", "width_max_m": "0.12",
+    "height_min_m": "0.06", "height_max_m": "0.2", "shape": "CylinderShape",
+    "materials": "CeramicMaterial|GlassMaterial", "traits": "OpenTop", "broader": "Tableware",
+}  # fmt: skip
 
 
-def small_tables(folder: Path, categories: Iterable[str] = CATEGORIES) -> Path:
-    """The bundled tables with these categories alone, in `folder`."""
-    kept = frozenset(categories)
-    shutil.copytree(bundled_ontology().parent / "tables", folder, dirs_exist_ok=True)
-    for path in sorted(folder.rglob("*.csv")):
-        if path.name == "categories.csv" or path.parent.name == "categories":
-            _keep(path, lambda row: row["name"] in kept)
-        else:
-            _keep(path, lambda row: _about(row, kept))
-    return folder
+def row(table: str, line: int = 2, **cells: str) -> Row:
+    """A row of that table."""
+    return Row(f"{table}.csv", line, cells)
 
 
-def _about(row: dict[str, str], kept: frozenset[str]) -> bool:
-    return all(not row.get(column) or row[column] in kept for column in _ABOUT_CATEGORIES)
+def category(**cells: str) -> Row:
+    """A cup's row with these cells changed."""
+    return Row("categories/kitchen.csv", 2, _CUP | cells)
 
 
-def _keep(path: Path, wanted: Callable[[dict[str, str]], bool]) -> None:
-    with path.open(encoding="utf-8", newline="") as file:
-        reader = csv.DictReader(file)
-        names, rows = reader.fieldnames or (), [row for row in reader if wanted(row)]
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, names, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+def subject(tokens: str = "", **cells: str) -> Subject:
+    """A cup as rules see it, with further tokens, each from a place of its own."""
+    cup = category(**cells)
+    own = ["shape:CylinderShape", "trait:OpenTop", "mainly:CeramicMaterial", "kind:Tableware"]
+    places = dict.fromkeys(own, cup.place)
+    places |= {token: f"{token.split(':')[0]}.csv, line 7" for token in tokens.split()}
+    return Subject(cup, places, measures_of(cup))
+
+
+def rule(name: str = "OpenTopContains", **cells: str) -> Row:
+    """A rule's row: what has an open top contains, unless other cells are given."""
+    given = {"needs": "trait:OpenTop"} if not {"needs", "any_of"} & set(cells) else {}
+    usual = {"name": name, "feature": "ContainAbility", "part": "BasinPart", "strength": "0.95"}
+    return Row("rules/structural.csv", 3, usual | given | cells)
