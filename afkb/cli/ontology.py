@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from afkb.cli.checking_command import check
 from afkb.cli.counting_command import count
 from afkb.cli.gathering_command import gather
 from afkb.cli.output import print_json, print_table, print_text, tell
 from afkb.cli.starter_command import new
 from afkb.cli.state import state_of
+from afkb.cli.status_command import status
 from afkb.errors import KnowledgeError
 
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ app = typer.Typer(no_args_is_help=True, help="Build, check and show the ontology
 app.command()(count)
 app.command()(gather)
 app.command()(new)
+app.command()(check)
+app.command()(status)
 
 _Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
 
@@ -53,37 +56,6 @@ def build(
     except OSError as error:
         raise KnowledgeError(f"{out}: can't be written: {error.strerror}; choose --out") from error
     tell(f"{out}: {count} statements")
-
-
-@app.command()
-def check(
-    ctx: typer.Context,
-    extensions: Annotated[
-        list[Path] | None, typer.Argument(metavar="[FILE]...", help="Extensions to check, too.")
-    ] = None,
-    as_json: _Json = False,
-) -> None:
-    """Read the ontology, plugins' extensions and yours, and count what they state, by status.
-
-    Fails, naming the file, where one can't be read, refers to a term that nothing has, or states
-    a number out of range.
-
-    Example: afkb ontology check my-home.owl
-    """
-    from afkb.inference import Network
-    from afkb.ontology.names import STATUSES
-
-    base = state_of(ctx).host.knowledge_base.extended(extensions or [])
-    Network.compile(base)
-    counts = {what: Counter(item.status for item in items) for what, items in _items(base).items()}
-    if as_json:
-        print_json({what: dict(sorted(by_status.items())) for what, by_status in counts.items()})
-        return
-    print_table(
-        ["", "all", *STATUSES],
-        [(what, c.total(), *(c[status] for status in STATUSES)) for what, c in counts.items()],
-        numbers=["all", *STATUSES],
-    )
 
 
 @app.command()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
 from pathlib import Path
 
 from rdflib import Graph, URIRef
@@ -13,7 +14,7 @@ from rdflib.term import Node
 from afkb.ontology.names import AFN, fragment
 from afkb.ontology.statements import FROM_ROW
 from afkb.quality.findings import Finding
-from afkb.quality.reading import plain, read_graph
+from afkb.quality.reading import plain, read_graphs
 
 _OTHERS = (
     "http://www.w3.org/", "http://purl.org/", "http://www.opengis.net/", "http://xmlns.com/",
@@ -48,16 +49,13 @@ class Checked:
 
         `KnowledgeError`, with file and line, where one can't be read.
         """
-        everything = Graph()
-        for path in context:
-            everything = _joined(everything, read_graph(path))
+        graphs = read_graphs([*context, *files])
         own: dict[URIRef, Path | None] = {}
         rows: dict[URIRef, str] = {}
         for path in files:
-            graph = read_graph(path)
-            own |= dict.fromkeys(terms_of(graph), path)
-            rows |= _rows(graph)
-            everything = _joined(everything, graph)
+            own |= dict.fromkeys(terms_of(graphs[path]), path)
+            rows |= _rows(graphs[path])
+        everything = reduce(_joined, graphs.values(), Graph())
         return cls(everything, own, not context, rows)
 
     def place(self, term: Node) -> str:

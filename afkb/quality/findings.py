@@ -22,8 +22,18 @@ class Finding:
     advice: bool = False
 
     def __str__(self) -> str:
-        kind = "advice: " if self.advice else ""
-        return f"{self.place}: {kind}{self.name}: {self.what}; {self.mend}"
+        kind = "advice" if self.advice else ""
+        head = ": ".join(filter(None, (self.place, kind, self.name, self.what)))
+        return f"{head}; {self.mend}" if self.mend else head
+
+
+def findings_of_error(error: Exception) -> list[Finding]:
+    """The lines of an error as findings; each begins with its place."""
+    found = []
+    for line in str(error).splitlines():
+        place, _, what = line.strip().partition(": ")
+        found.append(Finding(place, "", what, "") if what else Finding("", "", place, ""))
+    return found
 
 
 @dataclass(frozen=True, slots=True)

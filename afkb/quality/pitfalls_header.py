@@ -53,8 +53,8 @@ def no_licence(checked: Checked) -> Iterator[Found]:
 
 
 def no_metadata(checked: Checked) -> Iterator[Found]:
-    """What people look for in a header."""
-    for ontology in own_of(checked, OWL.Ontology):
+    """What people look for in the header of a published ontology."""
+    for ontology in own_of(checked, OWL.Ontology) if checked.bundled else ():
         for predicate, name in _METADATA.items():
             if (ontology, predicate, None) not in checked.graph:
                 yield Found(ontology, f"{name} is missing in the header", "state it")

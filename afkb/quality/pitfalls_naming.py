@@ -58,12 +58,18 @@ def missing_annotations(checked: Checked) -> Iterator[Found]:
 
 
 def mixed_up_annotations(checked: Checked) -> Iterator[Found]:
-    """P20: a label that is a sentence, or a definition that is only the label."""
+    """P20: a definition that only repeats the label, or a label that is a definition."""
     for term in sorted(checked.own):
-        label = str(checked.graph.value(term, RDFS.label) or "")
-        definition = str(checked.graph.value(term, SKOS.definition) or "")
-        if definition and label and len(definition) <= len(label):
+        label, definition = (
+            _words(str(checked.graph.value(term, predicate) or ""))
+            for predicate in (RDFS.label, SKOS.definition)
+        )
+        if definition and definition == label[: len(definition)]:
             yield Found(term, "the definition says no more than the label", "say what tells it")
+
+
+def _words(text: str) -> list[str]:
+    return [word for word in re.findall(r"\w+", text.casefold()) if word not in ("a", "an", "the")]
 
 
 def circular(checked: Checked) -> Iterator[Found]:

@@ -15,7 +15,7 @@ from afkb.quality.pitfall import PROPERTIES, Found, above, classes_of, in_order,
 _USED_BY_STATEMENTS = (
     "StructuralAffordance", "MaterialAffordance", "GraspAffordance", "Scale", "Shape", "Material",
     "Trait", "ObjectPart", "Pose", "MovingHabit", "Movability", "CategoryGroup", "AfbitRule",
-    "EvidenceClass", "RoomCategory",
+    "EvidenceClass",
 )  # fmt: skip
 """Classes whose individuals are there for statements to name."""
 _BUILT_IN = (str(OWL), str(RDF), str(RDFS), "http://www.w3.org/2001/XMLSchema#")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from pyoxigraph import BlankNode, NamedNode, RdfFormat, Triple, parse
@@ -24,17 +24,26 @@ FORMATS = {
 """RDF by the file's suffix; anything else is an extension in YAML or tables."""
 
 
+def read_graphs(files: Sequence[Path]) -> dict[Path, Graph]:
+    """What each file states: the ontology, then its extensions, in the order they are stacked.
+
+    `KnowledgeError`, with file and line, where one can't be read.
+    """
+    stacked: dict[Path, Graph] = {}
+    if any(path.suffix not in FORMATS for path in files):
+        from afkb.ontology.extension import read_stack
+
+        stacked = read_stack(files)
+    return {path: plain(stacked[path]) if path in stacked else read_graph(path) for path in files}
+
+
 def read_graph(path: Path) -> Graph:
-    """What a file states; `KnowledgeError`, with file and line, where it can't be read.
+    """What a file of RDF states; `KnowledgeError`, with file and line, where it can't be read.
 
     Plain and `xsd:string` literals come out alike, as RDF 1.1 has it.
     """
     if not path.exists():
         raise KnowledgeError(f"{path}: no such ontology file")
-    if path.suffix not in FORMATS:
-        from afkb.ontology.extension import extension_graph
-
-        return plain(extension_graph(path))
     # One scope a file: `_:1` of two files are two blank nodes. IRIs recur, so they are kept, too.
     scope: dict[str, Node] = {}
     graph = Graph()

@@ -70,7 +70,7 @@ def _what(shapes: Graph, report: Graph, result: Node) -> str:
         return str(shapes.value(shape, RDFS.label) or "does not fit its shape")
     value = report.value(result, SH.value)
     limit = {
-        name: short(shapes.value(shape, SH[name]) or "")
+        name: _limit(shapes, shape, name)
         for name in ("class", "datatype", "minInclusive", "minExclusive", "maxInclusive",
                      "maxCount", "lessThanOrEquals")
     }  # fmt: skip
@@ -89,6 +89,11 @@ def _what(shapes: Graph, report: Graph, result: Node) -> str:
         "UniqueLangConstraintComponent": f"is given twice in the language {text}",
     }
     return f"{short(path)} {said.get(kind, f'{text!r} does not fit')}"
+
+
+def _limit(shapes: Graph, shape: Node | None, name: str) -> str:
+    found = shapes.value(shape, SH[name])
+    return short(found) if isinstance(found, URIRef) else str(found)
 
 
 def _times(limit: str) -> str:

@@ -1,0 +1,92 @@
+"""Runs the quality gates, one after another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from afkb.errors import KnowledgeError
+from afkb.quality.checked import Checked
+from afkb.quality.findings import Finding, Gate, findings_of_error
+from afkb.quality.pitfalls import PITFALLS, check_pitfalls
+from afkb.quality.questions import check_questions, read_questions, store_of
+from afkb.quality.reading import FORMATS
+from afkb.quality.reasoner import NO_JAVA, java
+from afkb.quality.reasoning import check_reasoning
+from afkb.quality.shape_check import check_shapes, read_shapes
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What to check: `files` beside `context`; without context they are the ontology itself.
+
+    `folder`: holds shapes, questions and alignments.
+    """
+
+    files: Sequence[Path]
+    context: Sequence[Path]
+    folder: Path
+
+
+def run_gates(
+    task: Task, read: Callable[[], object], require_reasoner: bool = False
+) -> Iterator[Gate]:
+    """Each gate as it is done: reading, shapes, pitfalls, reasoner, questions.
+
+    `read`: reads everything as every command does, and raises `KnowledgeError`. The questions
+    are asked of the ontology itself, not of extensions.
+    """
+    yield _gate("reading", lambda: _nothing(read()))
+    try:
+        checked = Checked.of_files(task.files, task.context)
+    except KnowledgeError as error:
+        yield Gate("shapes, pitfalls, reasoner", findings_of_error(error))
+        return
+    yield from gates_of(checked, task, require_reasoner)
+
+
+def gates_of(checked: Checked, task: Task, require_reasoner: bool = False) -> Iterator[Gate]:
+    """The gates that look at the statements: shapes, pitfalls, reasoner, questions."""
+    shapes = read_shapes(task.folder / "shapes")
+    terms = f"{len(checked.own)} terms"
+    yield _gate("shapes", lambda: check_shapes(checked, shapes), terms)
+    yield _gate("pitfalls", lambda: check_pitfalls(checked), f"{len(PITFALLS)} kinds")
+    yield _reasoner("reasoner", checked, require_reasoner)
+    if task.context:
+        return
+    alignments = sorted(
+        path for path in (task.folder / "alignments").glob("*") if path.suffix in FORMATS
+    )
+    if alignments:
+        yield _aligned(task, alignments, require_reasoner)
+    questions = read_questions(task.folder / "questions")
+    store = store_of(checked.graph)
+    yield _gate("questions", lambda: check_questions(store, questions), f"{len(questions)} asked")
+
+
+def _gate(name: str, check: Callable[[], list[Finding]], note: str = "") -> Gate:
+    try:
+        return Gate(name, check(), note)
+    except KnowledgeError as error:
+        return Gate(name, findings_of_error(error))
+
+
+def _nothing(_: object) -> list[Finding]:
+    return []
+
+
+def _aligned(task: Task, alignments: Sequence[Path], require: bool) -> Gate:
+    """The reasoner over the ontology with all alignments together."""
+    try:
+        checked = Checked.of_files([*task.files, *alignments])
+    except KnowledgeError as error:
+        return Gate("reasoner, aligned", findings_of_error(error))
+    return _reasoner("reasoner, aligned", checked, require, f"{len(alignments)} alignments")
+
+
+def _reasoner(name: str, checked: Checked, require: bool, note: str = "") -> Gate:
+    if java() is None:
+        missing = [Finding("", "", NO_JAVA, "")] if require else []
+        return Gate(name, missing, "" if require else NO_JAVA, was_run=require)
+    return _gate(name, lambda: check_reasoning(checked), note or "HermiT")
