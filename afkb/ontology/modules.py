@@ -79,6 +79,8 @@ MODULES = (
 )
 """The modules, those that are imported first. What no other describes belongs to the last."""
 
+# Where neither the kind nor the domain of a property tells: an annotation belongs to the first
+# module, a property to the module of its domain, any other to the last.
 _PROPERTIES = {
     "features": (
         "status", "groundingStatus", "grounding", "observability", "fromRow", "parameterName",
@@ -164,7 +166,13 @@ class _Homes:
         name = str(subject).removeprefix(AFN)
         if name in _DEFINED_IN:
             return _DEFINED_IN[name]
-        classes = (str(c).removeprefix(AFN) for c in self._graph.objects(subject, RDF.type))
+        if (subject, RDF.type, OWL.AnnotationProperty) in self._graph:
+            return MODULES[0].name
+        about = [
+            *self._graph.objects(subject, RDF.type),
+            *self._graph.objects(subject, RDFS.domain),
+        ]
+        classes = (str(c).removeprefix(AFN) for c in about)
         homes = {self._of_class[c] for c in (name, *classes) if c in self._of_class}
         return min(homes, default=MODULES[-1].name)
 

@@ -16,6 +16,9 @@ from pyoxigraph import (
 )
 
 from afkb.errors import KnowledgeError, QueryError
+from afkb.knowledge.cache import cached_file, content_key
+from afkb.knowledge.closure import classify, close_ontology, closed_ontology
+from afkb.knowledge.definitions import Definitions
 from afkb.store.results import QueryResult
 from afkb.store.sparql_text import refuse_writing, syntax_error
 from afkb.store.stored import StoredMap
@@ -32,8 +35,9 @@ def query(maps: Sequence[StoredMap], sparql: str, ontology: Iterable[Path] = ())
     """The answer to a SELECT, ASK, CONSTRUCT or DESCRIBE over one or several maps.
 
     The default graph is everything together; `GRAPH ?map { … }` tells maps apart: a map's graph
-    is `urn:afkb:map:<name of its folder>`, the ontology's `urn:afkb:ontology`. Prefixes (`afn:`,
-    `geo:`, `prov:`, `skos:`, … and `scene:` for the first map) need no declaration. `ontology`:
+    is `urn:afkb:map:<name of its folder>`, the ontology's `urn:afkb:ontology`; what follows from
+    both is in `urn:afkb:inferred` and `urn:afkb:believed`. Prefixes (`afn:`, `geo:`, `prov:`,
+    `skos:`, … and `scene:` for the first map) need no declaration. `ontology`:
     the ontology and its extensions, in order. `QueryError`, with line and column, for what can't
     be parsed, and for updates and SERVICE.
     """
@@ -50,14 +54,16 @@ def query(maps: Sequence[StoredMap], sparql: str, ontology: Iterable[Path] = ())
 
 
 def dataset(maps: Sequence[StoredMap], ontology: Iterable[Path] = ()) -> Store:
-    """Maps and ontology in one store, a named graph each."""
+    """Maps and ontology in one store, a named graph each, with what follows from them."""
     store = Store()
+    load_closed(store, tuple(ontology))
+    definitions = Definitions.read(store)
     names: set[str] = set()
     for stored in maps:
         name = graph_name(stored.folder, names)
         graph = NamedNode(name)
         store.bulk_extend(_in_graph(stored, graph))
-    load_ontologies(store, tuple(ontology))
+    classify(store, definitions, names)
     return store
 
 
@@ -75,6 +81,28 @@ def graph_name(folder: Path, taken: set[str]) -> str:
 def _in_graph(stored: StoredMap, graph: NamedNode) -> Iterable[Quad]:
     for quad in stored.store:
         yield Quad(quad.subject, quad.predicate, quad.object, graph)
+
+
+def load_closed(store: Store, files: Sequence[Path]) -> None:
+    """Add the ontology, its extensions and what they entail, from a cache where that was done."""
+    if not files:
+        return
+    for path in files:
+        if not path.exists():
+            raise KnowledgeError(f"{path}: no such ontology file")
+    kept = cached_file("closed.nq", content_key(files), lambda: _closed(files))
+    if kept is None:
+        load_ontologies(store, files)
+        close_ontology(store)
+        return
+    # Lenient: it was checked when it was first read, and reads in three quarters of the time.
+    store.bulk_load(path=str(kept), format=RdfFormat.N_QUADS, lenient=True)
+
+
+def _closed(files: Sequence[Path]) -> bytes:
+    store = Store()
+    load_ontologies(store, files)
+    return closed_ontology(store)
 
 
 def load_ontologies(store: Store, files: Sequence[Path]) -> None:

@@ -13,7 +13,7 @@ from afkb.knowledge import AFN, bundled_ontology
 from afkb.ontology.build import build_ontology
 from afkb.ontology.modules import CATALOG, MODULES, Module, split, write_modules
 from afkb.ontology.names import ONTOLOGY_IRI, VERSION
-from ontology_tables import small_tables
+from small_ontology import small_tables
 
 A = Namespace(AFN)
 WHOLE = URIRef(ONTOLOGY_IRI)
