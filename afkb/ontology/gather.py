@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -12,9 +13,12 @@ from pathlib import Path
 from afkb.errors import KnowledgeError
 from afkb.ontology.tables import Row
 
+_WORDNET = re.compile(r"wn:([\w'.-]+?\.n\.\d\d)")
 HEADER = ("category", "source", "property", "name", "found_in")
 _ENOUGH = 0.5
 """Share of a category's names in a table that must have a property for the category to have it."""
+_ASKED = {"bddl": ("bddl", "wordnet"), "virtualhome": ("virtualhome", "wordnet")}
+"""Which tables know a name of a source, where it is not the source's own alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +43,9 @@ def gather(folder: Path, names: Iterable[Row]) -> dict[str, str]:
     }
     wanted: dict[tuple[str, str], list[Row]] = {}
     for row in names:
-        for source in ("bddl", "wordnet") if row["source"] == "bddl" else (row["source"],):
-            if source in tables:
+        for source in _ASKED.get(row["source"], (row["source"],)):
+            optional = source == "wordnet" and row["name"] not in tables["wordnet"].said
+            if source in tables and not optional:
                 wanted.setdefault((source, row["category"]), []).append(row)
     lines: dict[str, list[tuple[str, ...]]] = {source: [] for source in tables}
     for (source, category), rows in sorted(wanted.items()):
@@ -78,12 +83,16 @@ def _bddl(folder: Path) -> PublicTable:
 
 
 def _wordnet(folder: Path) -> PublicTable:
-    """A category's synset and all its hypernyms."""
+    """A category's synset and its hypernyms, as far as two tables tell them."""
     above = {
         row["synset"]: ([h.strip() for h in row["hypernyms"].split(",") if h.strip()], place)
         for row, place in _rows(folder, "bddl_synset_properties.csv")
     }
-    return PublicTable("wordnet", {c: _hypernyms(s, above) for c, s in _synsets(folder).items()})
+    said = {c: _hypernyms(s, above) for c, s in _synsets(folder).items()}
+    for row, place in _rows(folder, "object_affordance_draft.csv"):
+        for hypernym in _WORDNET.findall(row["rule_provenance"]):
+            said.setdefault(row["object"], {}).setdefault(hypernym, place)
+    return PublicTable("wordnet", said)
 
 
 def _hypernyms(synset: str, above: Mapping[str, tuple[list[str], str]]) -> dict[str, str]:

@@ -24,27 +24,31 @@ class Rule:
     """One row of a table of rules.
 
     `needs`: tokens and measures that must all hold. `any_of`: tokens of which `least` different
-    families must speak. `unless`: tokens and measures none of which may hold.
+    families must speak. `unless`: tokens and measures none of which may hold. `backing`: tokens
+    that speak for what the rule says, and alone make nothing.
     """
 
     row: Row
     needs: tuple[str, ...]
     any_of: tuple[str, ...]
     unless: tuple[str, ...]
+    backing: tuple[str, ...]
     least: int
 
     @classmethod
     def read(cls, row: Row) -> Rule:
         """The rule of a row; `KnowledgeError`, with its place, for words that mean nothing."""
-        columns = [tuple(row.get(column).split()) for column in ("needs", "any_of", "unless")]
+        columns = [
+            tuple(row.get(column).split()) for column in ("needs", "any_of", "unless", "backing")
+        ]
         for word in (w for column in columns for w in column):
             if not (_MEASURE.fullmatch(word) or _TOKEN.fullmatch(word)):
                 raise row.error(f"{word!r} is neither family:word nor a measure as in width_m<0.1")
         if not columns[0] and not columns[1]:
             raise row.error("a rule needs something: fill needs or any_of")
-        needs, any_of, unless = columns
+        needs, any_of, unless, backing = columns
         least = int(row.number("least")) if row.get("least") else 1
-        return cls(row, needs, any_of, unless, least)
+        return cls(row, needs, any_of, unless, backing, least)
 
     @property
     def name(self) -> str:
@@ -60,8 +64,8 @@ class Rule:
         spoken = {w: subject.tokens[w] for w in self.any_of if w in subject.tokens}
         if self.any_of and len({family_of(w) for w in spoken}) < self.least:
             return None
-        needed = {w: subject.tokens[w] for w in self.needs if w in subject.tokens}
-        return needed | spoken
+        said = (*self.needs, *self.backing)
+        return {w: subject.tokens[w] for w in said if w in subject.tokens} | spoken
 
 
 def read_rules(rows: Iterable[Row]) -> list[Rule]:

@@ -42,7 +42,7 @@ _TERMS = {
 _FLAGS = {"whole", "reviewed"}
 _WHOLE_NUMBERS = {"independent_sources", "buildings"}
 _LISTS = {"examples": SKOS.example}
-_SKIPPED = {"name", "kind", "needs", "any_of", "unless", "least"}
+_SKIPPED = {"name", "kind", "needs", "any_of", "unless", "backing", "least"}
 
 
 @dataclass(frozen=True, slots=True)
