@@ -11,6 +11,7 @@ from afkb.cli.checking_command import check
 from afkb.cli.counting_command import count
 from afkb.cli.gathering_command import gather
 from afkb.cli.output import print_json, print_table, print_text, tell
+from afkb.cli.reference_command import reference
 from afkb.cli.starter_command import new
 from afkb.cli.state import state_of
 from afkb.cli.status_command import status
@@ -26,6 +27,7 @@ app.command()(gather)
 app.command()(new)
 app.command()(check)
 app.command()(status)
+app.command()(reference)
 
 _Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
 

@@ -1,0 +1,71 @@
+"""The counted figures that the ontology states, by the things and rooms that they are about."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from afkb.knowledge.facts import Facts
+from afkb.ontology.names import DCTERMS, fragment
+
+
+@dataclass(frozen=True, slots=True)
+class StatedFigure:
+    """P(`category`, given the other), smoothed, with the counts behind it.
+
+    `other`: the room, the thing in the same room, or the thing that stands on the category.
+    `mean_number`: of things in such a room, None for other figures.
+    """
+
+    category: str
+    other: str
+    probability: float
+    successes: float
+    trials: float
+    buildings: int
+    mean_number: float | None
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class StatedFigures:
+    """The figures, likeliest first: those of a category, and those given the other."""
+
+    of: Mapping[str, list[StatedFigure]]
+    given: Mapping[str, list[StatedFigure]]
+
+
+def read_figures(facts: Facts, class_name: str) -> StatedFigures:
+    """The stated figures of one class: `ObjectInRoom`, `ObjectWithObject`, `ObjectOnSupport`."""
+    figures = [_figure(facts, iri) for iri in facts.of_type(class_name)]
+    ordered = sorted(figures, key=lambda f: (-f.probability, f.category, f.other))
+    return StatedFigures(
+        _grouped((f.category, f) for f in ordered), _grouped((f.other, f) for f in ordered)
+    )
+
+
+def _grouped(
+    pairs: Iterable[tuple[str, StatedFigure]],
+) -> Mapping[str, list[StatedFigure]]:
+    found: dict[str, list[StatedFigure]] = defaultdict(list)
+    for key, figure in pairs:
+        found[key].append(figure)
+    return dict(found)
+
+
+def _figure(facts: Facts, iri: str) -> StatedFigure:
+    other = facts.one(iri, "ofRoom") or facts.text(iri, "givenCategory")
+    mean = facts.one(iri, "meanNumber")
+    return StatedFigure(
+        category=fragment(facts.text(iri, "ofCategory")),
+        other=fragment(other),
+        probability=facts.probability(iri, "probability"),
+        successes=facts.number(iri, "successes", default=0.0),
+        trials=facts.number(iri, "trials", default=0.0),
+        buildings=int(facts.number(iri, "buildings", default=0.0)),
+        mean_number=None if mean is None else float(mean),
+        source=facts.text(iri, DCTERMS + "source", default="")
+        .removeprefix("counted in ")
+        .partition(";")[0],
+    )

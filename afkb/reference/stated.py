@@ -1,0 +1,115 @@
+"""What is stated of a term beside what the knowledge base types: examples, notes, links, words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from afkb.knowledge.facts import Facts
+from afkb.ontology.names import AFN, DCTERMS, ONTOLOGY_IRI, RDF_TYPE, RDFS_LABEL, SKOS, fragment
+
+_OWL = "http://www.w3.org/2002/07/owl#"
+_RDFS = "http://www.w3.org/2000/01/rdf-schema#"
+_LINKS = (
+    *(SKOS + name for name in ("exactMatch", "closeMatch", "broadMatch", "narrowMatch")),
+    _OWL + "sameAs",
+    _RDFS + "seeAlso",
+)
+_PROPERTIES = ("ObjectProperty", "DatatypeProperty")
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """A term of which the page needs only what every term has, and what it is said of."""
+
+    name: str
+    iri: str
+    label: str
+    definition: str
+    examples: tuple[str, ...]
+    status: str
+    source: str
+    place: str
+    said: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """What the ontology says of itself, and the extensions that are read with it."""
+
+    title: str
+    description: str
+    version: str
+    version_iri: str
+    licence: str
+    extensions: tuple[str, ...]
+
+
+def header_of(facts: Facts, extensions: Iterable[str]) -> Header:
+    """The header of the ontology; empty text for what it does not say."""
+
+    def said(prop: str) -> str:
+        return facts.text(ONTOLOGY_IRI, prop, default="")
+
+    return Header(
+        title=said(DCTERMS + "title") or "Affordance ontology",
+        description=said(DCTERMS + "description"),
+        version=said(_OWL + "versionInfo"),
+        version_iri=said(_OWL + "versionIRI"),
+        licence=said(DCTERMS + "license"),
+        extensions=tuple(extensions),
+    )
+
+
+def terms_of(facts: Facts, class_name: str, said: Iterable[str] = ()) -> list[Term]:
+    """The individuals of one of the ontology's classes, by label; `said`: more of their values."""
+    return by_label(_term(facts, iri, said) for iri in facts.of_type(class_name))
+
+
+def vocabulary_of(facts: Facts) -> list[Term]:
+    """The classes and properties of the ontology's own words, without the classes of entities."""
+    entities = {v for p in facts.values.values() for v in p.get(AFN + "entityClass", ())}
+    wanted = {_OWL + name for name in ("Class", *_PROPERTIES)}
+    return by_label(
+        _term(facts, iri, (_RDFS + "domain", _RDFS + "range", _RDFS + "subClassOf"))
+        for iri, said in facts.values.items()
+        if wanted & set(said.get(RDF_TYPE, ())) and iri.startswith(AFN) and iri not in entities
+        if not iri.endswith("Entity")
+    )
+
+
+def by_label(terms: Iterable[Term]) -> list[Term]:
+    """Terms in the order in which a reader looks for them."""
+    return sorted(terms, key=lambda term: (term.label.casefold(), term.name))
+
+
+def _term(facts: Facts, iri: str, said: Iterable[str]) -> Term:
+    return Term(
+        name=fragment(iri),
+        iri=iri,
+        label=facts.text(iri, RDFS_LABEL, default=fragment(iri)),
+        definition=facts.text(iri, SKOS + "definition", default=""),
+        examples=tuple(facts.many(iri, SKOS + "example")),
+        status=facts.text(iri, "status", default=""),
+        source=facts.text(iri, DCTERMS + "source", default=""),
+        place=facts.text(iri, "fromRow", default=facts.file_of[iri].name),
+        said=tuple((fragment(p), _short(v)) for p in said for v in facts.many(iri, p)),
+    )
+
+
+def _short(value: str) -> str:
+    return fragment(value) if value.startswith("http") else value
+
+
+def labels_of(facts: Facts) -> dict[str, str]:
+    """Name to label, of every term that has one; the file that is read first has precedence."""
+    labels: dict[str, str] = {}
+    for iri, said in facts.values.items():
+        for label in said.get(RDFS_LABEL, ())[:1]:
+            labels.setdefault(fragment(iri), label)
+    return labels
+
+
+def links_of(facts: Facts, iri: str) -> list[tuple[str, str]]:
+    """What means the same elsewhere: the property's name and the other's IRI."""
+    return [(fragment(prop), value) for prop in _LINKS for value in facts.many(iri, prop)]
