@@ -168,5 +168,7 @@ def _add_header(graph: Graph, sheet: Sheet) -> None:
     ontology = URIRef(sheet.iri.rstrip("#/"))
     graph.add((ontology, RDF.type, OWL.Ontology))
     graph.add((ontology, RDFS.label, Literal(sheet.label, lang="en")))
+    if sheet.license:
+        graph.add((ontology, DCTERMS.license, URIRef(sheet.license)))
     if sheet.definition:
         graph.add((ontology, DCTERMS.description, Literal(sheet.definition, lang="en")))

@@ -128,6 +128,7 @@ class Extension(_Strict):
     iri: Annotated[str, Field(pattern=IRI)] | None = None
     label: Text | None = None
     definition: Text | None = None
+    license: Annotated[str, Field(pattern=r"^https?://[^\s<>\"]+$")] | None = None
     status: Status | None = None
     source: Text | None = None
     categories: dict[str, Category] = {}

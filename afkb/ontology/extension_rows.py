@@ -46,6 +46,7 @@ def yaml_sheet(file: Path, problems: Problems) -> Sheet:
         iri=extension.iri or NAMESPACE.format(extension.extension),
         label=extension.label or extension.extension,
         definition=extension.definition or "",
+        license=extension.license or "",
     )
     sheet.entries = list(_Rows(document, extension, problems).entries())
     sheet.elsewhere = {

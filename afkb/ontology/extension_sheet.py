@@ -52,6 +52,7 @@ class Sheet:
     iri: str
     label: str
     definition: str
+    license: str = ""
     entries: list[Entry] = field(default_factory=list)
     homes: list[Path] = field(default_factory=list)
     elsewhere: dict[str, float] = field(default_factory=dict)

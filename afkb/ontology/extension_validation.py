@@ -25,6 +25,7 @@ _MENDS = {
     "model_type": "write keys and values below it",
 }
 _PATTERNS = {
+    "license": "write its address, as in https://creativecommons.org/licenses/by/4.0/",
     "extension": "write a name of letters, digits, - and _, as in my-home",
     "iri": "write a namespace that ends in # or /, as in https://example.org/my-home#",
 }
