@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rdflib import URIRef
-from rdflib.namespace import OWL, RDF
+from rdflib import BNode, URIRef
+from rdflib.namespace import OWL, RDF, RDFS
 from rdflib.term import Node
 
 from afkb.quality.checked import Checked, short
@@ -23,6 +23,11 @@ from afkb.quality.pitfall import in_order
 from afkb.quality.reasoner import Triple, is_consistent, logical, unsatisfiable_classes
 
 _WITNESS = "urn:afkb:witness:"
+_TERMS = (
+    OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, OWL.AnnotationProperty, OWL.Ontology,
+    OWL.Restriction, RDFS.Datatype,
+)  # fmt: skip
+"""What classes, properties and their like are declared as."""
 
 
 def check_reasoning(checked: Checked) -> list[Finding]:
@@ -76,7 +81,15 @@ def _contradiction(checked: Checked, triples: Sequence[Triple]) -> list[Finding]
 
 def _split(triples: Sequence[Triple]) -> tuple[list[Triple], list[Triple]]:
     """Axioms on classes and properties, and what is stated of individuals."""
-    individuals = {s for s, p, o in triples if p == RDF.type and o == OWL.NamedIndividual}
-    terms = [t for t in triples if t[0] not in individuals or t[2] == OWL.NamedIndividual]
-    kept = set(terms)
-    return terms, [t for t in triples if t not in kept]
+    declared = {s for s, p, o in triples if p == RDF.type and o in _TERMS}
+    facts = [t for t in triples if t[0] not in declared and _is_fact(t)]
+    of_individuals = set(facts)
+    return [t for t in triples if t not in of_individuals], facts
+
+
+def _is_fact(triple: Triple) -> bool:
+    subject, predicate, value = triple
+    if isinstance(subject, BNode) or value == OWL.NamedIndividual:
+        return False
+    of_words = str(predicate).startswith((str(RDFS), str(OWL)))
+    return not of_words or predicate in (OWL.sameAs, OWL.differentFrom)
