@@ -9,8 +9,8 @@ from typing import TypeVar
 
 from afkb.knowledge import Afbit, AfNet, Category, CoOccurrence, Dual, Feature
 from afkb.knowledge.facts import Facts, read_facts
-from afkb.ontology.names import KINDS
-from afkb.reference.figures import StatedFigures, read_figures
+from afkb.ontology.names import KINDS, SKOS, fragment
+from afkb.reference.figures import StatedCount, StatedFigures, read_counts, read_figures
 from afkb.reference.stated import Header, Term, header_of, labels_of, terms_of, vocabulary_of
 
 T = TypeVar("T")
@@ -47,6 +47,7 @@ class Book:
     duals_from: Mapping[str, list[Dual]]
     duals_to: Mapping[str, list[Dual]]
     pairs_of: Mapping[str, list[CoOccurrence]]
+    evidence: Mapping[str, list[StatedCount]]
     in_rooms: StatedFigures
     together: StatedFigures
     supports: StatedFigures
@@ -75,6 +76,7 @@ def read_book(base: AfNet) -> Book:
         duals_from=grouped(base.duals, lambda dual: [dual.evidence]),
         duals_to=grouped(base.duals, lambda dual: [dual.predicted]),
         pairs_of=grouped(base.co_occurrences, _named_in),
+        evidence=read_counts(facts),
         in_rooms=read_figures(facts, "ObjectInRoom"),
         together=read_figures(facts, "ObjectWithObject"),
         supports=read_figures(facts, "ObjectOnSupport"),
@@ -113,8 +115,6 @@ def _afbits_by_category(base: AfNet) -> dict[str, dict[str, list[Afbit]]]:
 
 
 def _narrower(facts: Facts) -> dict[str, list[str]]:
-    from afkb.ontology.names import SKOS, fragment
-
     names = grouped(
         sorted(facts.values), lambda iri: map(fragment, facts.many(iri, SKOS + "broader"))
     )

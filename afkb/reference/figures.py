@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 from afkb.knowledge.facts import Facts
 from afkb.ontology.names import DCTERMS, fragment
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +39,37 @@ class StatedFigures:
     given: Mapping[str, list[StatedFigure]]
 
 
+@dataclass(frozen=True, slots=True)
+class StatedCount:
+    """How many things of an evidence class a room of a category holds on average."""
+
+    evidence_class: str
+    count: float
+    status: str
+    source: str
+    place: str
+
+
+def read_counts(facts: Facts) -> Mapping[str, list[StatedCount]]:
+    """What rooms hold of the evidence classes, by room, the most first."""
+    counts = (
+        (fragment(facts.text(iri, "ofRoom")), _count(facts, iri))
+        for iri in facts.of_type("RoomEvidence")
+    )
+    ordered = sorted(counts, key=lambda pair: (-pair[1].count, pair[1].evidence_class))
+    return _grouped(ordered)
+
+
+def _count(facts: Facts, iri: str) -> StatedCount:
+    return StatedCount(
+        evidence_class=fragment(facts.text(iri, "ofEvidenceClass")),
+        count=facts.number(iri, "expectedCount"),
+        status=facts.text(iri, "status", default="proposed"),
+        source=facts.text(iri, DCTERMS + "source", default=""),
+        place=facts.text(iri, "fromRow", default=facts.file_of[iri].name),
+    )
+
+
 def read_figures(facts: Facts, class_name: str) -> StatedFigures:
     """The stated figures of one class: `ObjectInRoom`, `ObjectWithObject`, `ObjectOnSupport`."""
     figures = [_figure(facts, iri) for iri in facts.of_type(class_name)]
@@ -45,12 +79,10 @@ def read_figures(facts: Facts, class_name: str) -> StatedFigures:
     )
 
 
-def _grouped(
-    pairs: Iterable[tuple[str, StatedFigure]],
-) -> Mapping[str, list[StatedFigure]]:
-    found: dict[str, list[StatedFigure]] = defaultdict(list)
-    for key, figure in pairs:
-        found[key].append(figure)
+def _grouped(pairs: Iterable[tuple[str, T]]) -> Mapping[str, list[T]]:
+    found: dict[str, list[T]] = defaultdict(list)
+    for key, item in pairs:
+        found[key].append(item)
     return dict(found)
 
 

@@ -2,6 +2,7 @@
 // (#filter=wood), everything (#all), or else the overview. Without scripts everything is shown.
 const box = document.getElementById("filter");
 const shown = document.getElementById("shown");
+const nav = document.querySelector("nav");
 const main = document.querySelector("main");
 const sections = [...document.querySelectorAll("main > section")];
 const terms = [...document.querySelectorAll("article, tr.term")];
@@ -46,7 +47,7 @@ function mark(id) {
   for (const list of lists) list.open = entry ? list.contains(entry) : list === lists[0];
   if (!entry) return;
   entry.setAttribute("aria-current", "true");
-  entry.scrollIntoView({ block: "nearest" });
+  nav.scrollTop = entry.offsetTop - nav.clientHeight / 2;
 }
 
 function showPlace(id) {
@@ -60,10 +61,11 @@ function showPlace(id) {
   document.getElementById("overview").hidden = Boolean(section) && section.id !== "overview";
   main.dataset.view = alone ? "term" : section && section.id !== "overview" ? "section" : "home";
   mark(id);
-  if (place && !alone) place.scrollIntoView(); else scrollTo(0, 0);
+  if (place && place.tagName === "TR") place.scrollIntoView(); else scrollTo(0, 0);
 }
 
 function follow() {
+  if (nav.contains(document.activeElement)) document.activeElement.blur();
   const hash = decodeURIComponent(location.hash.slice(1));
   const asked = hash.startsWith("filter=") ? hash.slice("filter=".length) : "";
   box.value = asked;
