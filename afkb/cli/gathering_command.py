@@ -19,6 +19,8 @@ def gather(
 ) -> None:
     """Look up every name of `source_names` in the public tables; write what they say of it.
 
+    Evidence for afbits goes into the folder `evidence`, synsets and items into `links.csv`.
+
     The same tables give the same bytes. `afkb ontology build` comes after it.
 
     Example: afkb ontology gather knowledge --tables ontology/tables
@@ -26,16 +28,20 @@ def gather(
     from afkb.errors import KnowledgeError
     from afkb.knowledge import bundled_ontology
     from afkb.ontology.gather import gather as gathered
+    from afkb.ontology.links import gather_links
     from afkb.ontology.tables import read_table
     from afkb.ontology.writing import put_whole
 
     tables = tables or bundled_ontology().parent / "tables"
-    found = gathered(public, read_table(tables, "source_names"))
+    names = read_table(tables, "source_names")
+    found = gathered(public, names)
+    links = gather_links(public, names)
     out = tables / "evidence"
     try:
         out.mkdir(exist_ok=True)
         for source, text in found.items():
             put_whole(out / f"{source}.csv", text)
+        put_whole(tables / "links.csv", links)
     except OSError as error:
         raise KnowledgeError(f"{out}: can't be written: {error.strerror}; give --tables") from error
     tell(f"{out}: {sum(text.count(chr(10)) - 1 for text in found.values())} facts")

@@ -15,6 +15,7 @@ from afkb.ontology.counted_pairs import counted_pairs
 from afkb.ontology.entity_classes import add_entity_classes
 from afkb.ontology.entity_definitions import Definition, add_definitions
 from afkb.ontology.header import PREFIXES, add_external_terms, add_header
+from afkb.ontology.links import check_links, link_files
 from afkb.ontology.modules import add_modules, write_modules
 from afkb.ontology.names import AFN
 from afkb.ontology.rdfxml import to_rdfxml
@@ -25,7 +26,9 @@ from afkb.ontology.subjects import read_subjects
 from afkb.ontology.tables import Row, by_name, read_table
 from afkb.ontology.writing import one_writer, put_whole
 
-_UNLIKE_OTHERS = ("vocabulary", "afbits", "evidence", "review", "entity_definitions")
+_UNLIKE_OTHERS = (
+    "vocabulary", "afbits", "evidence", "review", "entity_definitions", "links", "units",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +79,7 @@ def build_ontology(folder: Path) -> Graph:
     add_entity_classes(graph, tables.rows["categories"], tables.rows["category_groups"], whole)
     add_definitions(graph, map(Definition.read, tables.rows["entity_definitions"]))
     add_modules(graph)
+    check_links(graph, tables.rows["links"], tables.rows["units"])
     _check_references(graph)
     return graph
 
@@ -107,6 +111,15 @@ def write_ontology(tables: Path, out: Path, modules: Path | None = None) -> int:
         if modules is not None:
             write_modules(graph, modules)
     return len(graph)
+
+
+def write_alignments(tables: Path, folder: Path) -> list[Path]:
+    """Write the alignments that are built from tables: with WordNet, Wikidata and QUDT."""
+    folder.mkdir(parents=True, exist_ok=True)
+    files = link_files(read_table(tables, "links"), read_table(tables, "units"))
+    for name, text in files.items():
+        put_whole(folder / name, text)
+    return [folder / name for name in files]
 
 
 def _check_references(graph: Graph) -> None:

@@ -50,9 +50,14 @@ _DATA = (URIRef(GEO + "asWKT"),)
 def add_header(
     graph: Graph, iri: str = ONTOLOGY_IRI, title: str = _TITLE, description: str = _DESCRIPTION
 ) -> None:
-    """Name, version and the one before, licence, dates and authorship of an ontology file."""
+    """Name, version, licence, dates and authorship of an ontology file.
+
+    The whole was there before its modules and alignments: it alone has a prior version.
+    """
     for predicate, value in _header(iri, title, description):
         graph.add((URIRef(iri), predicate, value))
+    if iri == ONTOLOGY_IRI:
+        graph.add((URIRef(iri), OWL.priorVersion, URIRef(f"{iri}/{PRIOR_VERSION}")))
 
 
 def _header(iri: str, title: str, description: str) -> list[tuple[URIRef, Node]]:
@@ -61,7 +66,6 @@ def _header(iri: str, title: str, description: str) -> list[tuple[URIRef, Node]]
         (RDF.type, OWL.Ontology),
         (OWL.versionIRI, URIRef(f"{iri}/{VERSION}")),
         (OWL.versionInfo, Literal(VERSION)),
-        (OWL.priorVersion, URIRef(f"{iri}/{PRIOR_VERSION}")),
         (RDFS.label, Literal(title, lang="en")),
         (RDFS.comment, Literal(RECONSTRUCTION, lang="en")),
         (DCTERMS.title, Literal(title, lang="en")),
