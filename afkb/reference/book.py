@@ -11,7 +11,15 @@ from afkb.knowledge import Afbit, AfNet, Category, CoOccurrence, Dual, Feature
 from afkb.knowledge.facts import Facts, read_facts
 from afkb.ontology.names import KINDS, SKOS, fragment
 from afkb.reference.figures import StatedCount, StatedFigures, read_counts, read_figures
-from afkb.reference.stated import Header, Term, header_of, labels_of, terms_of, vocabulary_of
+from afkb.reference.stated import (
+    Header,
+    Term,
+    header_of,
+    labels_of,
+    links_of,
+    terms_of,
+    vocabulary_of,
+)
 
 T = TypeVar("T")
 WORDS = {
@@ -31,13 +39,15 @@ class Book:
     """The ontology in the order of the page; every mapping's keys are names of terms.
 
     `afbits`: of a category, by kind of feature. `afforded`: of a feature, the surest first.
-    `narrower`: of a feature, category or group. `words`: the small tables by heading.
+    `narrower`: of a feature, category or group. `links`: by IRI.
+    `words`: the small tables by heading.
     """
 
     base: AfNet
     facts: Facts
     header: Header
     labels: Mapping[str, str]
+    links: Mapping[str, list[tuple[str, str]]]
     features: Mapping[str, list[Feature]]
     categories: list[Category]
     afbits: Mapping[str, Mapping[str, list[Afbit]]]
@@ -67,6 +77,7 @@ def read_book(base: AfNet) -> Book:
         facts=facts,
         header=header_of(facts, (file.name for file in base.files[1:])),
         labels=labels_of(facts),
+        links=links_of(facts, base.files[0].parent / "alignments"),
         features={k: _by_label(f for f in base.features.values() if f.kind == k) for k in KINDS},
         categories=_by_label(base.categories.values()),
         afbits=_afbits_by_category(base),

@@ -14,7 +14,6 @@ from afkb.knowledge.model import Range
 from afkb.ontology.names import STATUSES
 from afkb.reference.book import Book, grouped, read_book
 from afkb.reference.overview import overview
-from afkb.reference.stated import links_of
 
 _PARTS = Path(__file__).parent
 _RULE = re.compile(r"rule (\w+) \([^)]*\)")
@@ -45,7 +44,6 @@ def reference_page(base: AfNet) -> str:
         "words": _spaced,
     }
     environment.globals |= {
-        "links_of": lambda iri: links_of(book.facts, iri),
         "stated": lambda iri, prop: book.facts.many(iri, prop),
         "trapezoid": trapezoid,
         "by_strength": lambda afbits: grouped(afbits, lambda a: [number(a.strength)]),

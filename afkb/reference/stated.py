@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path
 
-from afkb.knowledge.facts import Facts
+from afkb.knowledge.facts import Facts, read_facts
 from afkb.ontology.names import AFN, DCTERMS, ONTOLOGY_IRI, RDF_TYPE, RDFS_LABEL, SKOS, fragment
 
 _OWL = "http://www.w3.org/2002/07/owl#"
 _RDFS = "http://www.w3.org/2000/01/rdf-schema#"
-_LINKS = (
+_LINKS = {
     *(SKOS + name for name in ("exactMatch", "closeMatch", "broadMatch", "narrowMatch")),
     _OWL + "sameAs",
     _RDFS + "seeAlso",
-)
+}
 _PROPERTIES = ("ObjectProperty", "DatatypeProperty")
 
 
@@ -110,6 +111,15 @@ def labels_of(facts: Facts) -> dict[str, str]:
     return labels
 
 
-def links_of(facts: Facts, iri: str) -> list[tuple[str, str]]:
-    """What means the same elsewhere: the property's name and the other's IRI."""
-    return [(fragment(prop), value) for prop in _LINKS for value in facts.many(iri, prop)]
+def links_of(facts: Facts, alignments: Path) -> dict[str, list[tuple[str, str]]]:
+    """IRI to what means the same elsewhere: the property's name and the other's IRI.
+
+    `alignments`: a folder of Turtle files beside the ontology; it need not be there.
+    """
+    stated = [facts, *(read_facts([file]) for file in sorted(alignments.glob("*.ttl")))]
+    links: dict[str, list[tuple[str, str]]] = {}
+    for some in stated:
+        for iri, said in some.values.items():
+            for prop in _LINKS & said.keys():
+                links.setdefault(iri, []).extend((fragment(prop), v) for v in sorted(said[prop]))
+    return {iri: sorted(found) for iri, found in links.items()}
