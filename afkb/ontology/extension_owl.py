@@ -40,6 +40,8 @@ def owl_statements(path: Path) -> Statements:
                 statements.add(subject.value, triple.predicate.value, text)
     except (SyntaxError, ValueError, OSError) as error:
         line = getattr(error, "lineno", None)
+        if line is None and form is RdfFormat.RDF_XML:
+            line = _broken_line(path)
         where = f", line {line}" if line else ""
         said = error.args[0] if error.args else "unreadable"
         raise KnowledgeError(
@@ -50,6 +52,17 @@ def owl_statements(path: Path) -> Statements:
     elif form is RdfFormat.TURTLE:
         statements.places = _turtle_places(path, statements)
     return statements
+
+
+def _broken_line(path: Path) -> int | None:
+    """The line at which a file stops being XML, or None where it is XML."""
+    try:
+        expat.ParserCreate().Parse(path.read_bytes(), True)
+    except expat.ExpatError as error:
+        return error.lineno
+    except OSError:
+        return None
+    return None
 
 
 class _Lines:

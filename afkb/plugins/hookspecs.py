@@ -42,7 +42,7 @@ def afkb_exporters(knowledge_base: AfNet) -> Iterable[Exporter]:
 
 @hookspec
 def afkb_ontologies(knowledge_base: AfNet) -> Iterable[Path]:
-    """Return paths of RDF/XML files that extend the ontology; handed the base it will extend."""
+    """Return paths of files that extend the ontology: YAML, tables or OWL."""
 
 
 @hookspec

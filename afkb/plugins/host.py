@@ -60,7 +60,7 @@ def _load(manager: pluggy.PluginManager, found: EntryPoint) -> None:
 class PluginHost:
     """The registered plugins and the knowledge base that every hook is handed.
 
-    `ontology` replaces the bundled ontology; `extensions` are RDF/XML files added to it, besides
+    `ontology` replaces the bundled ontology; `extensions` are files added to it, besides
     those that plugins bring through `afkb_ontologies`.
     """
 

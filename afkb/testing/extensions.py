@@ -14,9 +14,9 @@ from afkb.testing.require import require
 
 
 def check_ontology(path: Path, knowledge_base: AfNet) -> None:
-    """Raise unless the RDF/XML file extends the ontology and takes nothing away from it."""
+    """Raise unless the file or folder extends the ontology and takes nothing away from it."""
     who = f"ontology {path.name}"
-    require(path.is_file(), who, f"no file at {path}", "return a path inside the package")
+    require(path.exists(), who, f"nothing at {path}", "return a path inside the package")
     try:
         extended = knowledge_base.extended([path])
         words = set(extended.features) | set(extended.categories) | set(extended.rooms)

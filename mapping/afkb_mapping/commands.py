@@ -48,7 +48,7 @@ def map_(
         typer.Option(help="Option of the source, key=value; repeat for several."),
     ] = None,
     ontology: Annotated[
-        list[Path] | None, typer.Option(help="RDF/XML file that extends the ontology; repeatable.")
+        list[Path] | None, typer.Option(help="File that extends the ontology; repeatable.")
     ] = None,
     json_: Annotated[bool, typer.Option("--json", help="Print run.json's content.")] = False,
 ) -> None:
