@@ -2,9 +2,9 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
-SET_UP := pyproject.toml constraints.txt scripts/set-up.sh
+SET_UP := pyproject.toml constraints.txt scripts/set-up.sh scripts/apt.sh
 
-.PHONY: demo test lint format pictures pins clean
+.PHONY: demo test lint gates format pictures pins clean
 
 demo: $(VENV)/.default  ## map the bundled simulated home and print what was found
 	$(BIN)/afkb demo --out demo-map
@@ -16,6 +16,9 @@ lint: $(VENV)/.dev  ## style, formatting and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+gates: $(VENV)/.dev  ## check the ontology by shapes, pitfalls, reasoner (Java) and questions
+	$(BIN)/afkb ontology check --require-reasoner
 
 format: $(VENV)/.dev  ## mend what the formatter can mend
 	$(BIN)/ruff check --fix .

@@ -36,9 +36,7 @@ def logical(graph: Graph) -> list[Triple]:
     annotations = {*graph.subjects(RDF.type, OWL.AnnotationProperty)}
     annotations |= {RDFS.label, RDFS.comment, RDFS.seeAlso, RDFS.isDefinedBy, OWL.imports}
     annotations |= {OWL.versionInfo, OWL.versionIRI, OWL.deprecated}
-    return sorted(
-        t for t in graph if t[1] not in annotations and t[0] not in annotations
-    )  # fmt: skip
+    return [t for t in graph if t[1] not in annotations and t[0] not in annotations]
 
 
 def is_consistent(triples: Iterable[Triple]) -> bool:

@@ -36,9 +36,14 @@ def check_reasoning(checked: Checked) -> list[Finding]:
     witnesses = _witnesses(triples)
     if is_consistent([*triples, *witnesses]):
         return []
+    triples.sort(key=_text)
     if is_consistent(triples):
         return [_empty(checked, c) for c in _unsatisfiable(triples, witnesses)]
     return _contradiction(checked, triples)
+
+
+def _text(triple: Triple) -> tuple[str, ...]:
+    return tuple(map(str, triple))
 
 
 def _witnesses(triples: Sequence[Triple]) -> list[Triple]:
