@@ -38,7 +38,9 @@ class RelationshipNetwork:
                 if _modulates(pair, rule, kb):
                     strongest = max(pair.strength, listed.get(pair.evidence_category, 0.0))
                     listed[pair.evidence_category] = strongest
-            rules[rule.name] = np.array([listed.get(n, rule.strength) for n in names])
+            rules[rule.name] = np.array(
+                [_strength(kb, name, listed, rule.strength) for name in names]
+            )
         return cls(names, {d.name: d.strength for d in kb.duals}, rules)
 
     def dual(self, name: str) -> float:
@@ -60,6 +62,20 @@ class RelationshipNetwork:
         if not total > 0:
             raise EvidenceError("the category posterior of the seen thing is empty")
         return float(self.rules[name] @ weights / total)
+
+
+def _strength(
+    kb: AfNet, category: str, listed: Mapping[str | None, float], otherwise: float
+) -> float:
+    """Of the listed pair of the category, else of the nearest broader one that has one."""
+    seen: set[str] = set()
+    current: str | None = category
+    while current is not None and current not in seen:
+        if current in listed:
+            return listed[current]
+        seen.add(current)
+        current = kb.categories[current].broader if current in kb.categories else None
+    return otherwise
 
 
 def _modulates(pair: CoOccurrence, rule: CoOccurrence, kb: AfNet) -> bool:
