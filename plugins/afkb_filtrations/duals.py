@@ -38,26 +38,30 @@ class DualPredictor:
         """One hypothesis per group of anchors and predicted feature, in the ontology's order."""
         network = network_of(self._knowledge_base)
         faintest = self._knowledge_base.parameters["FaintestHypothesis"]
+        afforded = [set(network.objects.afforded(d.affordances)) for d in detections]
+        seen = set().union(*afforded)
         duals = [
-            d for d in self._knowledge_base.duals if network.relations.dual(d.name) >= faintest
+            dual
+            for dual in self._knowledge_base.duals
+            if dual.evidence in seen and network.relations.dual(dual.name) >= faintest
         ]
         return [
             self._hypothesis(network, detections, group, anchors)
             for predicted, relation in dict.fromkeys((d.predicted, d.relation) for d in duals)
             for group, anchors in self._groups(
-                network,
                 detections,
+                afforded,
                 [d for d in duals if (d.predicted, d.relation) == (predicted, relation)],
             )
         ]
 
     def _groups(
-        self, network: Network, detections: Sequence[Detection], duals: list[Dual]
+        self, detections: Sequence[Detection], afforded: Sequence[set[str]], duals: list[Dual]
     ) -> list[tuple[dict[int, Dual], tuple[int, ...]]]:
         """The dual of every anchor, and which of the anchors share what they predict."""
         dual_of = {}
         for index, detection in enumerate(detections):
-            dual = _applying(network, detection, duals)
+            dual = _applying(detection, afforded[index], duals)
             if dual and not any(_is_it(detection, other, dual) for other in detections):
                 dual_of[index] = dual
 
@@ -102,9 +106,8 @@ class DualPredictor:
         )
 
 
-def _applying(network: Network, detection: Detection, duals: list[Dual]) -> Dual | None:
+def _applying(detection: Detection, afforded: set[str], duals: list[Dual]) -> Dual | None:
     """The dual whose evidence the detection affords; of several, that of the narrowest feature."""
-    afforded = network.objects.afforded(detection.affordances)
     fitting = [
         d
         for d in duals
