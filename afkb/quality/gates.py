@@ -55,14 +55,8 @@ def gates_of(checked: Checked, task: Task, require_reasoner: bool = False) -> It
     yield _reasoner("reasoner", checked, require_reasoner)
     if task.context:
         return
-    alignments = sorted(
-        path for path in (task.folder / "alignments").glob("*") if path.suffix in FORMATS
-    )
-    if alignments:
-        yield _aligned(task, alignments, require_reasoner)
-    questions = read_questions(task.folder / "questions")
-    store = store_of(checked.graph)
-    yield _gate("questions", lambda: check_questions(store, questions), f"{len(questions)} asked")
+    yield _questions("questions", task.folder / "questions", checked)
+    yield from _aligned(task, require_reasoner)
 
 
 def _gate(name: str, check: Callable[[], list[Finding]], note: str = "") -> Gate:
@@ -76,13 +70,29 @@ def _nothing(_: object) -> list[Finding]:
     return []
 
 
-def _aligned(task: Task, alignments: Sequence[Path], require: bool) -> Gate:
-    """The reasoner over the ontology with all alignments together."""
+def _aligned(task: Task, require_reasoner: bool) -> Iterator[Gate]:
+    """The reasoner, and the questions that need them, over the ontology with all alignments."""
+    folder = task.folder / "alignments"
+    alignments = sorted(path for path in folder.glob("*") if path.suffix in FORMATS)
+    if not alignments:
+        return
     try:
         checked = Checked.of_files([*task.files, *alignments])
     except KnowledgeError as error:
-        return Gate("reasoner, aligned", findings_of_error(error))
-    return _reasoner("reasoner, aligned", checked, require, f"{len(alignments)} alignments")
+        yield Gate("reasoner, aligned", findings_of_error(error))
+        return
+    note = f"{len(alignments)} alignments"
+    yield _reasoner("reasoner, aligned", checked, require_reasoner, note)
+    yield _questions("questions, aligned", task.folder / "questions" / "aligned", checked)
+
+
+def _questions(name: str, folder: Path, checked: Checked) -> Gate:
+    try:
+        questions = read_questions(folder)
+    except KnowledgeError as error:
+        return Gate(name, findings_of_error(error))
+    note = f"{len(questions)} asked"
+    return _gate(name, lambda: check_questions(store_of(checked.graph), questions), note)
 
 
 def _reasoner(name: str, checked: Checked, require: bool, note: str = "") -> Gate:

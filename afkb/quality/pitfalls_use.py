@@ -26,11 +26,15 @@ def orphans(checked: Checked) -> Iterator[Found]:
     graph = checked.graph
     kinds = [URIRef(AFN + name) for name in _USED_BY_STATEMENTS]
     for term in own_of(checked, *kinds):
-        if (None, None, term) not in graph:
+        if (None, None, term) not in graph and not _is_deprecated(graph, term):
             yield Found(term, "no statement names it", "use it, or take it out")
     for term in own_of(checked, OWL.Class):
         if (None, None, term) not in graph and (term, RDFS.subClassOf, None) not in graph:
             yield Found(term, "nothing is of this class", "use it, or take it out")
+
+
+def _is_deprecated(graph: Graph, term: Node) -> bool:
+    return str(graph.value(term, OWL.deprecated)) == "true"
 
 
 def unused_properties(checked: Checked) -> Iterator[Found]:
