@@ -108,7 +108,8 @@ def read_facts(files: Sequence[Path]) -> Facts:
     facts = Facts()
     plain = _extensions(files)
     for file in files:
-        _collect(plain.get(file) or _statements(file), file, facts)
+        if file in plain or file.suffix in _FORMATS:
+            _collect(plain.get(file) or _statements(file), file, facts)
     _check_imports(facts)
     return facts
 

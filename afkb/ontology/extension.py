@@ -55,13 +55,14 @@ def extension_graph(path: Path, earlier: Sequence[Path] = ()) -> Graph:
 def read_stack(files: Sequence[Path]) -> dict[Path, Graph]:
     """What extensions in YAML or tables state, read one after another with those in OWL.
 
-    `files`: the ontology and its extensions, in order. Raises one `KnowledgeError` that has a
-    line for everything that is wrong in any of them, OWL files included.
+    `files`: the ontology and its extensions, in order; one that is given again, as a plugin's may
+    be, is read once. Raises one `KnowledgeError` that has a line for everything that is wrong in
+    any of them, OWL files included.
     """
     stack = _Stack(files[0] if files else None)
     graphs: dict[Path, Graph] = {}
     found: list[str] = []
-    for path in files[1:]:
+    for path in _once(files[1:]):
         try:
             sheet = stack.add(path)
             if sheet is not None:
@@ -71,6 +72,18 @@ def read_stack(files: Sequence[Path]) -> dict[Path, Graph]:
     if found:
         raise KnowledgeError("\n".join(found))
     return graphs
+
+
+def _once(files: Sequence[Path]) -> list[Path]:
+    """The files without those that are the same, or have the same content, as one before."""
+    seen: set[object] = set()
+    found = []
+    for path in files:
+        key = path.read_bytes() if path.is_file() else path.resolve()
+        if key not in seen:
+            found.append(path)
+        seen.add(key)
+    return found
 
 
 def extension_homes(path: Path) -> list[Path]:

@@ -244,3 +244,9 @@ def test_an_empty_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "shop").mkdir()
     (said,) = problems(tmp_path / "shop")
     assert said.startswith("shop: no extension: no table in this folder; name its files after")
+
+
+@pytest.mark.parametrize("name", ["home.yaml", "copy.yaml"])
+def test_a_file_that_is_given_again_is_read_once(tmp_path: Path, name: str) -> None:
+    first, again = yaml_file(tmp_path, KIOSK), yaml_file(tmp_path, KIOSK, name)
+    assert "Kiosk" in AfNet(extensions=[first, again]).categories
