@@ -75,7 +75,6 @@ def vocabulary_of(facts: Facts) -> list[Term]:
         _term(facts, iri, (_RDFS + "domain", _RDFS + "range", _RDFS + "subClassOf"))
         for iri, said in facts.values.items()
         if wanted & set(said.get(RDF_TYPE, ())) and iri.startswith(AFN) and iri not in entities
-        if not iri.endswith("Entity")
     )
 
 
@@ -94,7 +93,9 @@ def _term(facts: Facts, iri: str, said: Iterable[str]) -> Term:
         status=facts.text(iri, "status", default=""),
         source=facts.text(iri, DCTERMS + "source", default=""),
         place=facts.text(iri, "fromRow", default=facts.file_of[iri].name),
-        said=tuple((fragment(p), _short(v)) for p in said for v in facts.many(iri, p)),
+        said=tuple(
+            (fragment(p), _short(v)) for p in said for v in facts.many(iri, p) if v[:2] != "_:"
+        ),
     )
 
 
