@@ -19,6 +19,7 @@ from afkb.ontology.links import check_links, link_files
 from afkb.ontology.modules import add_modules, write_modules
 from afkb.ontology.names import AFN
 from afkb.ontology.rdfxml import to_rdfxml
+from afkb.ontology.rule_examples import add_rule_examples
 from afkb.ontology.rules import read_rules
 from afkb.ontology.schema import AFBITS, CO_OCCURRENCES, TABLES
 from afkb.ontology.statements import FROM_ROW, add_individual, add_term
@@ -78,6 +79,7 @@ def build_ontology(folder: Path) -> Graph:
     _add_counted(graph, tables, admitted, folder.parent / "counts")
     add_entity_classes(graph, tables.rows["categories"], tables.rows["category_groups"], whole)
     add_definitions(graph, map(Definition.read, tables.rows["entity_definitions"]))
+    add_rule_examples(graph)
     add_modules(graph)
     check_links(graph, tables.rows["links"], tables.rows["units"])
     _check_references(graph)
