@@ -79,6 +79,7 @@ class Category(Statement):
 
     - `length_m`, `width_m`: longer and shorter horizontal extent; `height_m`: own vertical extent.
     - `top_height_m`: of its main upward surface above the floor, None where it is put on things.
+    - `underside_m`: typical height of its underside above the floor, None where nobody said.
     - `mass_kg`: typical range, None where it makes no sense.
     - `afbits`: feature name to strength, of the whole thing or of a part that stands for it, as
       the seat does for a chair (paper §II.A). `AfNet.afbits` has all, part by part.
@@ -103,6 +104,7 @@ class Category(Statement):
     expected_number: float
     afbits: Mapping[str, float]
     definition: str = ""
+    underside_m: Range | None = None
     mass_kg: Range | None = None
     moved: str | None = None
     shape: str | None = None

@@ -172,6 +172,7 @@ def _category(
         expected_number=_positive(facts, iri, "expectedNumber"),
         afbits=MappingProxyType(dict(sorted(afbits.items()))),
         definition=facts.text(iri, SKOS + "definition", default=""),
+        underside_m=_range_or_none(facts, iri, "underside"),
         mass_kg=_range_or_none(facts, iri, "mass"),
         moved=moved,
         shape=_maybe(facts.one(iri, "shape")),

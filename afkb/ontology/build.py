@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rdflib import Graph, URIRef
 
@@ -15,6 +16,7 @@ from afkb.ontology.counted_pairs import counted_pairs
 from afkb.ontology.entity_classes import add_entity_classes
 from afkb.ontology.entity_definitions import Definition, add_definitions
 from afkb.ontology.header import PREFIXES, add_external_terms, add_header
+from afkb.ontology.heights import with_undersides
 from afkb.ontology.links import check_links, link_files
 from afkb.ontology.modules import add_modules, write_modules
 from afkb.ontology.names import AFN
@@ -27,6 +29,9 @@ from afkb.ontology.subjects import read_subjects
 from afkb.ontology.tables import Row, by_name, read_table
 from afkb.ontology.writing import one_writer, put_whole
 
+if TYPE_CHECKING:
+    from afkb.figures import Figures
+
 _UNLIKE_OTHERS = (
     "vocabulary", "afbits", "evidence", "review", "entity_definitions", "links", "units",
 )  # fmt: skip
@@ -34,16 +39,19 @@ _UNLIKE_OTHERS = (
 
 @dataclass(frozen=True, slots=True)
 class Tables:
-    """The rows of every table, by the table's name."""
+    """The rows of every table, by the table's name, and what was counted in homes beside them."""
 
     rows: dict[str, list[Row]]
+    figures: Figures | None = None
 
     @classmethod
     def read(cls, folder: Path) -> Tables:
         """Read a folder of tables; `KnowledgeError` with file and line."""
         names = (*_UNLIKE_OTHERS, *(t.name for t in TABLES))
         rows = {name: read_table(folder, name) for name in names}
-        return cls(rows | {"categories": [completed(row) for row in rows["categories"]]})
+        figures = _figures(folder.parent / "counts")
+        categories = with_undersides(map(completed, rows["categories"]), figures)
+        return cls(rows | {"categories": categories}, figures)
 
     def afbits(self) -> list[Afbit]:
         """Every afbit that the tables state or make, those that are held back among them."""
@@ -76,7 +84,8 @@ def build_ontology(folder: Path) -> Graph:
         for row, afbit in zip(rows, admitted, strict=True)
         if afbit.key[1] in as_wholes and afbit.kind != "grasp"
     ]
-    _add_counted(graph, tables, admitted, folder.parent / "counts")
+    if tables.figures is not None:
+        _add_counted(graph, tables, admitted, tables.figures)
     add_entity_classes(graph, tables.rows["categories"], tables.rows["category_groups"], whole)
     add_definitions(graph, map(Definition.read, tables.rows["entity_definitions"]))
     add_rule_examples(graph)
@@ -86,13 +95,17 @@ def build_ontology(folder: Path) -> Graph:
     return graph
 
 
-def _add_counted(graph: Graph, tables: Tables, afbits: list[Afbit], folder: Path) -> None:
-    """Add what was counted in homes, where there are counts beside the tables."""
-    if not folder.is_dir():
-        return
+def _figures(counts: Path) -> Figures | None:
+    """What was counted in homes; None where there is no folder of counts."""
+    if not counts.is_dir():
+        return None
     from afkb.figures import Figures
 
-    figures = Figures.load(folder)
+    return Figures.load(counts)
+
+
+def _add_counted(graph: Graph, tables: Tables, afbits: list[Afbit], figures: Figures) -> None:
+    """Add what was counted in homes."""
     for table, row in counted_rows(figures):
         add_individual(graph, table, row)
     categories = by_name(tables.rows["categories"])

@@ -19,6 +19,7 @@ _TEXT = {
     "grounding": URIRef(AFN + "grounding"),
     "source": DCTERMS.source,
     "choice": URIRef(AFN + "choice"),
+    "underside_from": URIRef(AFN + "undersideFrom"),
 }
 _PLAIN = {"status", "grounding_status", "observability", "stands_on", "parameter_name", "relation"}
 _TERMS = {
