@@ -10,7 +10,7 @@ from typing import TypeVar
 from afkb.knowledge import Afbit, AfNet, Category, CoOccurrence, Dual, Feature
 from afkb.knowledge.facts import Facts, read_facts
 from afkb.ontology.names import KINDS, SKOS, fragment
-from afkb.reference.figures import StatedCount, StatedFigures, read_counts, read_figures
+from afkb.reference.figures import StatedCount, StatedFigures, figures_of, read_counts
 from afkb.reference.stated import (
     Header,
     Term,
@@ -71,6 +71,7 @@ def read_book(base: AfNet) -> Book:
     """The book of a knowledge base, its extensions included."""
     facts = read_facts(base.files)
     groups = terms_of(facts, "CategoryGroup", ("entityClass",))
+    figures = figures_of(base, facts)
     rules = terms_of(facts, "AfbitRule", ("ofFeature", "ofPart", "strength"))
     return Book(
         base=base,
@@ -88,9 +89,9 @@ def read_book(base: AfNet) -> Book:
         duals_to=grouped(base.duals, lambda dual: [dual.predicted]),
         pairs_of=grouped(base.co_occurrences, _named_in),
         evidence=read_counts(facts),
-        in_rooms=read_figures(facts, "ObjectInRoom"),
-        together=read_figures(facts, "ObjectWithObject"),
-        supports=read_figures(facts, "ObjectOnSupport"),
+        in_rooms=figures["ObjectInRoom"],
+        together=figures["ObjectWithObject"],
+        supports=figures["ObjectOnSupport"],
         groups=groups,
         rules=rules,
         words={heading: terms_of(facts, name, ("value",)) for name, heading in WORDS.items()},

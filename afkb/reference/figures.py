@@ -7,10 +7,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
+from afkb.knowledge import AfNet
 from afkb.knowledge.facts import Facts
+from afkb.ontology.counted import counted_rows
+from afkb.ontology.extension import extension_homes
 from afkb.ontology.names import DCTERMS, fragment
+from afkb.ontology.tables import Row
 
 T = TypeVar("T")
+CLASSES = ("ObjectInRoom", "ObjectWithObject", "ObjectOnSupport")
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,9 +75,18 @@ def _count(facts: Facts, iri: str) -> StatedCount:
     )
 
 
-def read_figures(facts: Facts, class_name: str) -> StatedFigures:
-    """The stated figures of one class: `ObjectInRoom`, `ObjectWithObject`, `ObjectOnSupport`."""
-    figures = [_figure(facts, iri) for iri in facts.of_type(class_name)]
+def figures_of(base: AfNet, facts: Facts) -> dict[str, StatedFigures]:
+    """The figures by class: `ObjectInRoom`, `ObjectWithObject`, `ObjectOnSupport`.
+
+    As the ontology states them; where extensions bring homes, as they are with those counted in.
+    """
+    if any(extension_homes(file) for file in base.files[1:]):
+        rows = [(table.class_name, row) for table, row in counted_rows(base.figures)]
+        return {c: _sorted(_of_row(row) for name, row in rows if name == c) for c in CLASSES}
+    return {c: _sorted(_of_facts(facts, iri) for iri in facts.of_type(c)) for c in CLASSES}
+
+
+def _sorted(figures: Iterable[StatedFigure]) -> StatedFigures:
     ordered = sorted(figures, key=lambda f: (-f.probability, f.category, f.other))
     return StatedFigures(
         _grouped((f.category, f) for f in ordered), _grouped((f.other, f) for f in ordered)
@@ -86,7 +100,7 @@ def _grouped(pairs: Iterable[tuple[str, T]]) -> Mapping[str, list[T]]:
     return dict(found)
 
 
-def _figure(facts: Facts, iri: str) -> StatedFigure:
+def _of_facts(facts: Facts, iri: str) -> StatedFigure:
     other = facts.one(iri, "ofRoom") or facts.text(iri, "givenCategory")
     mean = facts.one(iri, "meanNumber")
     return StatedFigure(
@@ -97,7 +111,22 @@ def _figure(facts: Facts, iri: str) -> StatedFigure:
         trials=facts.number(iri, "trials", default=0.0),
         buildings=int(facts.number(iri, "buildings", default=0.0)),
         mean_number=None if mean is None else float(mean),
-        source=facts.text(iri, DCTERMS + "source", default="")
-        .removeprefix("counted in ")
-        .partition(";")[0],
+        source=_counted_in(facts.text(iri, DCTERMS + "source", default="")),
     )
+
+
+def _of_row(row: Row) -> StatedFigure:
+    return StatedFigure(
+        category=row["object"],
+        other=row.get("room") or row["given"],
+        probability=row.number("probability"),
+        successes=row.number("successes"),
+        trials=row.number("trials"),
+        buildings=int(row.number("buildings")),
+        mean_number=row.number("mean_number") if row.get("mean_number") else None,
+        source=_counted_in(row["source"]),
+    )
+
+
+def _counted_in(source: str) -> str:
+    return source.removeprefix("counted in ").partition(";")[0]

@@ -14,7 +14,7 @@ from afkb.knowledge import AfNet
 from afkb.reference import reference_page
 from afkb.reference.overview import overview
 from afkb.reference.page import because, span
-from extension_samples import KIOSK, yaml_file
+from extension_samples import KIOSK, table, yaml_file
 
 ROOT = Path(__file__).parents[2]
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
@@ -25,6 +25,7 @@ MAIN_KINDS = (
     *("duals, each direction", "co-occurrences"),
     *(f"figures: object {what}" for what in ("in room", "with object", "on object")),
 )
+HOME = [f"my-flat,r{n},kitchen,kiosk:1|mug:2" for n in range(3)]
 pytestmark = pytest.mark.xdist_group("reference")
 
 
@@ -99,11 +100,13 @@ def test_figures_are_shown_with_their_counts(net: AfNet, html: str) -> None:
 def test_terms_of_an_extension_are_on_it_and_the_same_ontology_gives_the_same_bytes(
     net: AfNet, tmp_path: Path
 ) -> None:
-    home = yaml_file(tmp_path, KIOSK)
+    table(tmp_path, "rooms.csv", "building,room,category,objects", *HOME)
+    home = yaml_file(tmp_path, "homes: [rooms.csv]\n" + KIOSK)
     html = reference_page(net.extended([home]))
     kiosk = html[html.index('<article id="Kiosk">') :]
     assert "home.yaml" in kiosk[: kiosk.index("</article>")]
     assert "with home.yaml" in html
+    assert '<a href="#Kitchen">kitchen</a>' in kiosk[: kiosk.index("</article>")]
     out = tmp_path / "page.html"
     command = [Path(sys.executable).parent / "afkb", "ontology", "reference", "--out", out]
     seeded = os.environ | {"PYTHONHASHSEED": "7"}
