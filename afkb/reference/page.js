@@ -44,7 +44,8 @@ function showWholeIndex() {
 function mark(id) {
   for (const a of entries.values()) a.removeAttribute("aria-current");
   const entry = entries.get(id);
-  for (const list of lists) list.open = entry ? list.contains(entry) : list === lists[0];
+  const own = lists.find((list) => list.contains(entry) || list.dataset.section === id);
+  for (const list of lists) list.open = list === (own || lists[0]);
   if (!entry) return;
   entry.setAttribute("aria-current", "true");
   nav.scrollTop = entry.offsetTop - nav.clientHeight / 2;
