@@ -43,7 +43,7 @@ def owl_statements(path: Path) -> Statements:
         if line is None and form is RdfFormat.RDF_XML:
             line = _broken_line(path)
         where = f", line {line}" if line else ""
-        said = error.args[0] if error.args else "unreadable"
+        said = " ".join(str(error.args[0] if error.args else "unreadable").split())
         raise KnowledgeError(
             f"{path}{where}: not readable as {form.name}: {said}; save it as RDF/XML or Turtle"
         ) from error

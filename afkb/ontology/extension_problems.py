@@ -26,7 +26,7 @@ class Problems:
 
     def add(self, place: str, problem: str) -> None:
         """Note what is wrong at `file, line N` (or a file), with its mend."""
-        entry = (*_parted(place), problem)
+        entry = (*_parted(place), " ".join(problem.split()))
         if entry not in self.found:
             self.found.append(entry)
 

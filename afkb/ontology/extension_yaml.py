@@ -79,7 +79,8 @@ def _composed(file: Path) -> Node | None:
 def _yaml_problem(error: yaml.MarkedYAMLError, text: str) -> str:
     if "'\\t'" in str(error.problem):
         return "a tab where YAML wants spaces; indent with spaces"
-    return f"not YAML: {error.problem}; mend that line or the one above"
+    problem = " ".join(str(error.problem).split())
+    return f"not YAML: {problem}; mend that line or the one above"
 
 
 class _Reader:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from afkb.errors import KnowledgeError
 
-_FOLDER = Path(__file__).parent / "starters"
+_FOLDER = Path(__file__).parent / "starter_files"
 
 
 class Kind(StrEnum):

@@ -83,10 +83,11 @@ def read_file(path: Path, table: str) -> tuple[list[str], list[Row]]:
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.DictReader(file, strict=True)
+            header = list(reader.fieldnames or ())
             rows = [_row(table, reader, cells) for cells in reader]
     except (csv.Error, UnicodeDecodeError) as error:
         raise KnowledgeError(f"{table}: not readable as CSV: {error}; save it as UTF-8") from error
-    return list(reader.fieldnames or ()), rows
+    return header, rows
 
 
 def _read_checked(path: Path, table: str) -> list[Row]:
