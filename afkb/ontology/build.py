@@ -24,7 +24,7 @@ from afkb.ontology.rdfxml import to_rdfxml
 from afkb.ontology.rule_examples import add_rule_examples
 from afkb.ontology.rules import read_rules
 from afkb.ontology.schema import AFBITS, CO_OCCURRENCES, TABLES
-from afkb.ontology.statements import FROM_ROW, add_individual, add_term
+from afkb.ontology.statements import FROM_ROW, add_disjointness, add_individual, add_term
 from afkb.ontology.subjects import read_subjects
 from afkb.ontology.tables import Row, by_name, read_table
 from afkb.ontology.writing import one_writer, put_whole
@@ -71,6 +71,7 @@ def build_ontology(folder: Path) -> Graph:
     add_external_terms(graph)
     for row in tables.rows["vocabulary"]:
         add_term(graph, row)
+    add_disjointness(graph, tables.rows["vocabulary"])
     for table in TABLES:
         for row in tables.rows[table.name]:
             add_individual(graph, table, row)

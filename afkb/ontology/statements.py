@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from itertools import combinations
+
 from rdflib import Graph, Literal, URIRef
 from rdflib.namespace import OWL, RDF, RDFS, SKOS, XSD
 
@@ -60,13 +63,30 @@ def add_term(graph: Graph, row: Row) -> None:
     link = RDF.type if row["kind"] == "individual" else RDFS.subClassOf
     for parent in row.several("parent"):
         graph.add((subject, link, URIRef(AFN + parent)))
-    if row.get("domain"):
-        graph.add((subject, RDFS.domain, URIRef(AFN + row["domain"])))
-    if row.get("range"):
-        base = str(XSD) if row["kind"] == "data" else AFN
-        graph.add((subject, RDFS.range, URIRef(base + row["range"])))
+    for column, predicate in (("domain", RDFS.domain), ("range", RDFS.range)):
+        if row.get(column):
+            graph.add((subject, predicate, _class_named(row, column)))
     graph.add((subject, RDFS.label, Literal(row["label"], lang="en")))
     graph.add((subject, SKOS.definition, Literal(row["definition"], lang="en")))
     graph.add((subject, RDFS.comment, Literal(row["definition"], lang="en")))
     for example in row.several("example"):
         graph.add((subject, SKOS.example, Literal(example, lang="en")))
+
+
+def _class_named(row: Row, column: str) -> URIRef:
+    """A domain or range: `owl:Thing` where anything may be, a datatype, or a class."""
+    if row[column] == "owl:Thing":
+        return OWL.Thing
+    literal = column == "range" and row["kind"] == "data"
+    return URIRef((str(XSD) if literal else AFN) + row[column])
+
+
+def add_disjointness(graph: Graph, rows: Iterable[Row]) -> None:
+    """State that no two classes of a group in `vocabulary.csv` have an instance in common."""
+    groups: dict[str, list[URIRef]] = {}
+    for row in rows:
+        if row.get("disjoint"):
+            groups.setdefault(row["disjoint"], []).append(URIRef(AFN + row["name"]))
+    for members in groups.values():
+        for one, other in combinations(sorted(members), 2):
+            graph.add((one, OWL.disjointWith, other))
