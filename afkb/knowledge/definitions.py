@@ -14,6 +14,7 @@ _RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
 _RDFS = "http://www.w3.org/2000/01/rdf-schema#"
 _OWL = "http://www.w3.org/2002/07/owl#"
 _XSD = "http://www.w3.org/2001/XMLSchema#"
+_THING = NamedNode(_OWL + "Thing")
 SUBCLASS = NamedNode(_RDFS + "subClassOf")
 BROADER = NamedNode(SKOS + "broader")
 Limits = tuple[float, float]
@@ -21,11 +22,12 @@ AFFORDS, SCALE, Z = (NamedNode(AFN + name) for name in ("affords", "scale", "z")
 
 
 def links(store: Store, predicate: NamedNode) -> dict[str, list[str]]:
-    """IRI to the IRIs that a property gives it, in every graph."""
+    """IRI to the IRIs that a property gives it, in every graph, but for `owl:Thing`."""
     found: dict[str, list[str]] = defaultdict(list)
     for quad in store.quads_for_pattern(None, predicate, None, None):
-        if isinstance(quad.subject, NamedNode) and isinstance(quad.object, NamedNode):
-            found[quad.subject.value].append(quad.object.value)
+        subject, value = quad.subject, quad.object
+        if isinstance(subject, NamedNode) and isinstance(value, NamedNode) and value != _THING:
+            found[subject.value].append(value.value)
     return dict(found)
 
 

@@ -63,6 +63,7 @@ def test_a_thing_is_of_every_class_above_its_own() -> None:
     store = with_scene(":e1 a afn:KitchenTableEntity .")
     assert {"TableEntity", "FurnitureEntity", "Entity"} <= types(store, "e1")
     assert ask(store, "SELECT ?x { ?x a afn:FurnitureEntity }") == ["e1"]
+    assert "Thing" not in types(store, "e1")
 
 
 def test_subclass_and_broader_go_through_all_levels() -> None:
