@@ -51,11 +51,12 @@ def class_name(category: str) -> str:
 
 def _add_class(graph: Graph, row: Row, parent: str, names: Names) -> URIRef:
     entity_class = URIRef(names.new(class_name(row["name"])))
-    definition = f"What a map holds as a {row['label']}."
+    definition = f"The things of a map that are of the category: {row['label']}."
     graph.add((entity_class, RDF.type, OWL.Class))
     graph.add((entity_class, RDFS.subClassOf, URIRef(names.iri(parent))))
     graph.add((entity_class, RDFS.label, Literal(f"{row['label']} (entity)", lang="en")))
     graph.add((entity_class, SKOS.definition, Literal(definition, lang="en")))
-    graph.add((entity_class, SKOS.example, Literal(f"a {row['label']} of a map", lang="en")))
+    example = row.get("example") or f"one {row['label']} of a map"
+    graph.add((entity_class, SKOS.example, Literal(example, lang="en")))
     graph.add((URIRef(names.new(row["name"])), URIRef(AFN + "entityClass"), entity_class))
     return entity_class

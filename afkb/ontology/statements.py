@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from itertools import combinations
 
 from rdflib import Graph, Literal, URIRef
-from rdflib.namespace import OWL, RDF, RDFS, SKOS, XSD
+from rdflib.namespace import DCTERMS, OWL, RDF, RDFS, SKOS, XSD
 
 from afkb.ontology.names import AFN, BUNDLED, KINDS, Names
 from afkb.ontology.schema import Table
@@ -71,6 +72,14 @@ def add_term(graph: Graph, row: Row) -> None:
     graph.add((subject, RDFS.comment, Literal(row["definition"], lang="en")))
     for example in row.several("example"):
         graph.add((subject, SKOS.example, Literal(example, lang="en")))
+    graph.add((subject, URIRef(AFN + "status"), Literal("proposed", datatype=XSD.string)))
+    graph.add((subject, DCTERMS.source, Literal(_source_of_term(row), lang="en")))
+
+
+def _source_of_term(row: Row) -> str:
+    """The vocabulary is this project's; where a definition cites the paper, so does the source."""
+    cited = re.search(r"paper (§[^);]*|Fig[^);]*)", row["definition"])
+    return f"vocabulary of this project{f', after {cited[0]}' if cited else ''}"
 
 
 def _class_named(row: Row, column: str) -> URIRef:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 
 from afkb.errors import KnowledgeError
@@ -29,8 +30,16 @@ class Task:
     folder: Path
 
 
+class Reasoner(StrEnum):
+    """Whether the reasoner, which needs Java and most of the time, is run."""
+
+    WHERE_FOUND = "where there is Java"
+    REQUIRED = "always"
+    LEFT_OUT = "not asked for"
+
+
 def run_gates(
-    task: Task, read: Callable[[], object], require_reasoner: bool = False
+    task: Task, read: Callable[[], object], reasoner: Reasoner = Reasoner.WHERE_FOUND
 ) -> Iterator[Gate]:
     """Each gate as it is done: reading, shapes, pitfalls, reasoner, questions.
 
@@ -43,20 +52,22 @@ def run_gates(
     except KnowledgeError as error:
         yield Gate("shapes, pitfalls, reasoner", findings_of_error(error))
         return
-    yield from gates_of(checked, task, require_reasoner)
+    yield from gates_of(checked, task, reasoner)
 
 
-def gates_of(checked: Checked, task: Task, require_reasoner: bool = False) -> Iterator[Gate]:
+def gates_of(
+    checked: Checked, task: Task, reasoner: Reasoner = Reasoner.WHERE_FOUND
+) -> Iterator[Gate]:
     """The gates that look at the statements: shapes, pitfalls, reasoner, questions."""
     shapes = read_shapes(task.folder / "shapes")
     terms = f"{len(checked.own)} terms"
     yield _gate("shapes", lambda: check_shapes(checked, shapes), terms)
     yield _gate("pitfalls", lambda: check_pitfalls(checked), f"{len(PITFALLS)} kinds")
-    yield _reasoner("reasoner", checked, require_reasoner)
+    yield _reasoner("reasoner", checked, reasoner)
     if task.context:
         return
     yield _questions("questions", task.folder / "questions", checked)
-    yield from _aligned(task, require_reasoner)
+    yield from _aligned(task, reasoner)
 
 
 def _gate(name: str, check: Callable[[], list[Finding]], note: str = "") -> Gate:
@@ -70,7 +81,7 @@ def _nothing(_: object) -> list[Finding]:
     return []
 
 
-def _aligned(task: Task, require_reasoner: bool) -> Iterator[Gate]:
+def _aligned(task: Task, reasoner: Reasoner) -> Iterator[Gate]:
     """The reasoner, and the questions that need them, over the ontology with all alignments."""
     folder = task.folder / "alignments"
     alignments = sorted(path for path in folder.glob("*") if path.suffix in FORMATS)
@@ -82,7 +93,7 @@ def _aligned(task: Task, require_reasoner: bool) -> Iterator[Gate]:
         yield Gate("reasoner, aligned", findings_of_error(error))
         return
     note = f"{len(alignments)} alignments"
-    yield _reasoner("reasoner, aligned", checked, require_reasoner, note)
+    yield _reasoner("reasoner, aligned", checked, reasoner, note)
     yield _questions("questions, aligned", task.folder / "questions" / "aligned", checked)
 
 
@@ -95,8 +106,11 @@ def _questions(name: str, folder: Path, checked: Checked) -> Gate:
     return _gate(name, lambda: check_questions(store_of(checked.graph), questions), note)
 
 
-def _reasoner(name: str, checked: Checked, require: bool, note: str = "") -> Gate:
+def _reasoner(name: str, checked: Checked, reasoner: Reasoner, note: str = "") -> Gate:
+    if reasoner is Reasoner.LEFT_OUT:
+        return Gate(name, [], str(reasoner), was_run=False)
     if java() is None:
+        require = reasoner is Reasoner.REQUIRED
         missing = [Finding("", "", NO_JAVA, "")] if require else []
         return Gate(name, missing, "" if require else NO_JAVA, was_run=require)
     return _gate(name, lambda: check_reasoning(checked), note or "HermiT")

@@ -8,7 +8,7 @@ from afkb.errors import KnowledgeError
 from afkb.quality import gates
 from afkb.quality.checked import Checked
 from afkb.quality.explanation import smallest
-from afkb.quality.gates import Task, run_gates
+from afkb.quality.gates import Reasoner, Task, run_gates
 from afkb.quality.reasoner import is_consistent, java
 from afkb.quality.reasoning import check_reasoning
 from quality_samples import broken, told
@@ -74,7 +74,7 @@ def test_without_java_the_gate_is_not_run(tmp_path: Path, monkeypatch: pytest.Mo
     task = Task([tmp_path / "sample.ttl"], [], Path(__file__).parents[2] / "ontology")
     lines = [str(gate) for gate in run_gates(task, lambda: None)]
     assert any(line.startswith("reasoner: not run (no Java; install one") for line in lines)
-    required = [str(gate) for gate in run_gates(task, lambda: None, require_reasoner=True)]
+    required = [str(gate) for gate in run_gates(task, lambda: None, reasoner=Reasoner.REQUIRED)]
     assert "reasoner: failed 1" in required
 
 
