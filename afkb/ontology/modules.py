@@ -103,6 +103,7 @@ _PROPERTIES = {
     ),
 }  # fmt: skip
 _DEFINED_IN = {name: module for module, names in _PROPERTIES.items() for name in names}
+_ORDER = [module.name for module in MODULES]
 _STATEMENTS = frozenset((
     "Afbit", "Trapezoid", "ReportRate", "RoomEvidence", "ObjectInRoom", "ObjectWithObject",
     "ObjectOnSupport",
@@ -129,7 +130,7 @@ def split(graph: Graph) -> dict[str, Graph]:
     parts = {module.name: Graph() for module in MODULES}
     for subject, predicate, value in graph:
         if subject != URIRef(ONTOLOGY_IRI):
-            parts[homes.of_statement(subject, predicate)].add((subject, predicate, value))
+            parts[homes.of_statement(subject, predicate, value)].add((subject, predicate, value))
     for module in MODULES:
         _add_module_header(parts[module.name], module)
     return parts
@@ -148,9 +149,11 @@ class _Homes:
             if isinstance(value, BNode)
         }
 
-    def of_statement(self, subject: Node, predicate: Node) -> str:
+    def of_statement(self, subject: Node, predicate: Node, value: Node | None = None) -> str:
         if predicate == URIRef(AFN + "entityClass"):
             return MODULES[-1].name
+        if predicate == OWL.disjointWith and value is not None:
+            return max(self.of_subject(subject), self.of_subject(value), key=_ORDER.index)
         return self.of_subject(subject)
 
     def of_subject(self, subject: Node) -> str:

@@ -94,8 +94,8 @@ def add_disjointness(graph: Graph, rows: Iterable[Row]) -> None:
     """State that no two classes of a group in `vocabulary.csv` have an instance in common."""
     groups: dict[str, list[URIRef]] = {}
     for row in rows:
-        if row.get("disjoint"):
-            groups.setdefault(row["disjoint"], []).append(URIRef(AFN + row["name"]))
+        for group in row.several("disjoint"):
+            groups.setdefault(group, []).append(URIRef(AFN + row["name"]))
     for members in groups.values():
         for one, other in combinations(sorted(members), 2):
             graph.add((one, OWL.disjointWith, other))

@@ -14,6 +14,7 @@ CATEGORIES = frozenset((
     "Mirror", "StandingMirror", "Bowl", "Counter", "Ball", "Bathtub", "TrashCan", "Doorframe",
     "Door", "Television", "Display", "Carton", "Tetrapak", "Canister", "Bottle", "WaterBottle",
 ))  # fmt: skip
+GROUPS = frozenset(("Food",))
 _ABOUT_CATEGORIES = ("category", "evidence_category", "predicted_category", "object", "given")
 
 
@@ -30,6 +31,8 @@ def small_tables(folder: Path, categories: Iterable[str] = CATEGORIES) -> Path:
 
 
 def _about(row: dict[str, str], kept: frozenset[str]) -> bool:
+    if "features" in row and not row["definition"]:
+        return row["name"] in kept | GROUPS
     return all(not row.get(column) or row[column] in kept for column in _ABOUT_CATEGORIES)
 
 

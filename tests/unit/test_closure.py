@@ -190,7 +190,7 @@ def random_scene(rng: np.random.Generator, count: int) -> str:
     features = ["SupportAbility", "ContainAbility", "IntrinsicContainAbility", "SitAbility"]
     features += ["LieAbility", "BlockAbility", "TransmitAbility", "DisplayAbility", "PassAbility"]
     classes = ["ObservedEntity", "DualPrediction", "MugEntity", "KitchenTableEntity", "BedEntity"]
-    classes += ["MirrorEntity", "ChairLikeSeatEntity", "LargeLowSupportEntity"]
+    classes += ["StandingMirrorEntity", "ChairLikeSeatEntity", "LargeLowSupportEntity"]
     lines = []
     for i in range(count):
         afforded = rng.choice(features, size=rng.integers(0, 4), replace=False)
