@@ -22,7 +22,7 @@ from afkb.knowledge.model import (
     RoomCategory,
     Scale,
 )
-from afkb.ontology.names import UNKNOWN_ROOM
+from afkb.ontology.names import UNKNOWN_ROOM, fragment
 
 if TYPE_CHECKING:
     from afkb.figures import Figures
@@ -150,7 +150,7 @@ class AfNet:
     def _homes(self) -> Figures | None:
         """The figures of the homes that extensions bring, whose terms they may name."""
         from afkb.figures import Figures, Names, count_rooms
-        from afkb.ontology.extension import extension_homes
+        from afkb.extensions.stack import extension_homes
 
         tables = [table for file in self._extensions for table in extension_homes(file)]
         if not tables:
@@ -178,6 +178,7 @@ class AfNet:
 
     def statements_about(self, name: str) -> dict[str, list[str]]:
         """Everything stated of a term, by property: IRIs and literals as text, sorted."""
-        subject = self.iri(name)
-        stated = self._facts.values.get(subject, {})
+        values = self._facts.values
+        subject = next((iri for iri in values if fragment(iri) == name), None)
+        stated = values[subject if subject is not None else self.iri(name)]
         return {prop: sorted(values) for prop, values in sorted(stated.items())}

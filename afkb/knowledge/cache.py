@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import copyreg
+import gc
 import hashlib
 import os
 import pickle
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -64,9 +66,22 @@ def cached(name: str, key: str, make: Callable[[], T]) -> T:
 def _entry(path: Path) -> tuple[Any] | None:
     """What an entry holds, in a tuple of its own; None where there is none that can be read."""
     try:
-        return (pickle.loads(_own_bytes(path)),)
+        with _no_collection():
+            return (pickle.loads(_own_bytes(path)),)
     except (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, IndexError):
         return None
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Spares the search for garbage while thousands of objects are made: it takes half the time."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
 def cached_file(name: str, key: str, make: Callable[[], bytes]) -> Path | None:

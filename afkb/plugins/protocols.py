@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:  # Every command loads this; few of them need arrays.
+    import numpy as np
+    from numpy.typing import NDArray
 
-from afkb.flow import Detection, Hypothesis, SkippedFrame, TopologicalMap, View
+    from afkb.flow import Detection, Hypothesis, SkippedFrame, TopologicalMap, View
 
 
 @runtime_checkable
