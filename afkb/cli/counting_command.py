@@ -43,7 +43,7 @@ def count(
     Example: afkb ontology count my-homes.csv --out my-counts
     """
     from afkb.figures import Names, count_rooms, read_simulated, write_counts
-    from afkb.knowledge import bundled_ontology
+    from afkb.ontology.bundled import bundled_ontology
 
     names = Names.load(tables or bundled_ontology().parent / "tables")
     counts, unknown = count_rooms(rooms, names, shape)

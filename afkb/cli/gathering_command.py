@@ -26,7 +26,7 @@ def gather(
     Example: afkb ontology gather knowledge --tables ontology/tables
     """
     from afkb.errors import KnowledgeError
-    from afkb.knowledge import bundled_ontology
+    from afkb.ontology.bundled import bundled_ontology
     from afkb.ontology.gather import gather as gathered
     from afkb.ontology.links import gather_links
     from afkb.ontology.tables import read_table

@@ -49,8 +49,8 @@ def build(
 
     Example: afkb ontology build --tables ontology/tables --out ontology/afnet.owl
     """
-    from afkb.knowledge import bundled_ontology
     from afkb.ontology.build import write_alignments, write_ontology
+    from afkb.ontology.bundled import bundled_ontology
 
     tables = tables or bundled_ontology().parent / "tables"
     out = out or bundled_ontology()

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from afkb.cli.output import print_text, tell
-from afkb.ontology.starters import Kind
+from afkb.starters import Kind
 
 
 def new(
@@ -24,7 +24,7 @@ def new(
 
     Example: afkb ontology new my-home.yaml
     """
-    from afkb.ontology.starters import write_starter
+    from afkb.starters import write_starter
 
     for file in write_starter(path, kind):
         print_text(str(file))

@@ -1,6 +1,6 @@
 """AfNet/AfRob: affordance features, categories, duals, co-occurrences and rooms, from OWL."""
 
-from afkb.knowledge.base import AfNet, bundled_ontology
+from afkb.knowledge.base import AfNet
 from afkb.knowledge.model import (
     Afbit,
     Category,
@@ -13,6 +13,7 @@ from afkb.knowledge.model import (
     Scale,
     Trapezoid,
 )
+from afkb.ontology.bundled import bundled_ontology
 from afkb.ontology.names import AFN, SOMETHING_ELSE, UNKNOWN_ROOM
 
 __all__ = [

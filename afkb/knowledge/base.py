@@ -22,19 +22,11 @@ from afkb.knowledge.model import (
     RoomCategory,
     Scale,
 )
+from afkb.ontology.bundled import bundled_ontology
 from afkb.ontology.names import UNKNOWN_ROOM, fragment
 
 if TYPE_CHECKING:
     from afkb.figures import Figures
-
-
-def bundled_ontology() -> Path:
-    """The ontology that comes with the package: in the wheel, else in the checkout."""
-    package = Path(__file__).parent.parent
-    for folder in (package / "_ontology", package.parent / "ontology"):
-        if (folder / "afnet.owl").is_file():
-            return folder / "afnet.owl"
-    raise KnowledgeError(f"{package / '_ontology' / 'afnet.owl'}: missing; reinstall afkb")
 
 
 class AfNet:
@@ -149,8 +141,8 @@ class AfNet:
 
     def _homes(self) -> Figures | None:
         """The figures of the homes that extensions bring, whose terms they may name."""
+        from afkb.extensions import extension_homes
         from afkb.figures import Figures, Names, count_rooms
-        from afkb.extensions.stack import extension_homes
 
         tables = [table for file in self._extensions for table in extension_homes(file)]
         if not tables:

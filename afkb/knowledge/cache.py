@@ -121,8 +121,9 @@ def _remove_old(entries: Iterable[Path]) -> None:
 @cache
 def _reader_fingerprint() -> bytes:
     """The code that reads, so that a changed reader never meets an old entry."""
-    package = Path(__file__).parent
-    sources = [*package.glob("*.py"), *(package.parent / "ontology").glob("*.py")]
+    package = Path(__file__).parent.parent
+    rooms = ("knowledge", "extensions", "ontology", "figures")
+    sources = [source for room in rooms for source in (package / room).glob("*.py")]
     digest = hashlib.sha256(f"{sys.version_info[:2]}".encode())
     for source in sorted(sources):
         digest.update(source.read_bytes())

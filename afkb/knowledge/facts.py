@@ -120,7 +120,7 @@ def _extensions(files: Sequence[Path]) -> dict[Path, list[tuple[str, str, str]]]
         return {}
     from rdflib import URIRef
 
-    from afkb.extensions.stack import read_stack
+    from afkb.extensions import read_stack
 
     return {
         path: [(str(s), str(p), str(o)) for s, p, o in graph if isinstance(s, URIRef)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -37,6 +38,15 @@ def fragment(iri: str) -> str:
     'Mug'
     """
     return iri.rsplit("#", 1)[-1].rsplit("/", 1)[-1]
+
+
+def slug(name: str) -> str:
+    """A name that may stand in an IRI.
+
+    >>> slug("my home (2)")
+    'my-home-2'
+    """
+    return re.sub(r"[^A-Za-z0-9_]+", "-", name).strip("-") or "extension"
 
 
 @dataclass(frozen=True, slots=True)

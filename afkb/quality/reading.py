@@ -31,7 +31,7 @@ def read_graphs(files: Sequence[Path]) -> dict[Path, Graph]:
     """
     stacked: dict[Path, Graph] = {}
     if any(path.suffix not in FORMATS for path in files):
-        from afkb.ontology.extension import read_stack
+        from afkb.extensions import read_stack
 
         stacked = read_stack(files)
     return {path: plain(stacked[path]) if path in stacked else read_graph(path) for path in files}

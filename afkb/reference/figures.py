@@ -7,10 +7,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
+from afkb.extensions import extension_homes
 from afkb.knowledge import AfNet
 from afkb.knowledge.facts import Facts
 from afkb.ontology.counted import counted_rows
-from afkb.ontology.extension import extension_homes
 from afkb.ontology.names import DCTERMS, fragment
 from afkb.ontology.tables import Row
 

@@ -109,7 +109,7 @@ def load_ontologies(store: Store, files: Sequence[Path]) -> None:
     """Add the ontology and its extensions; `KnowledgeError` where one can't be read."""
     plain = [path for path in files if path.suffix not in _OWL_FORMATS]
     if plain:
-        from afkb.ontology.extension import read_stack
+        from afkb.extensions import read_stack
 
         for graph in read_stack(files).values():
             text = graph.serialize(format="nt", encoding="utf-8")

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from afkb.errors import KnowledgeError
+from afkb.extensions import read_stack
 from afkb.knowledge import bundled_ontology
-from afkb.ontology.extension import read_stack
 
 HEAD = "extension: home\n"
 KIOSK = """\

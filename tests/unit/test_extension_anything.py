@@ -8,8 +8,8 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from afkb.errors import KnowledgeError
+from afkb.extensions import read_stack
 from afkb.knowledge import bundled_ontology
-from afkb.ontology.extension import read_stack
 from test_extension_reading import EVERYTHING
 
 LINES = ("extension: home\n" + EVERYTHING).splitlines()

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from rdflib import Graph, URIRef
 from rdflib.namespace import OWL, RDF, RDFS
 
+from afkb.extensions import extension_graph, extension_homes
+from afkb.extensions.problems import Problems
+from afkb.extensions.yaml_rows import yaml_sheet
 from afkb.inference import Network
 from afkb.knowledge import AFN, SOMETHING_ELSE, AfNet
-from afkb.ontology.extension import extension_graph, extension_homes
-from afkb.ontology.extension_problems import Problems
-from afkb.ontology.extension_rows import yaml_sheet
 from extension_samples import KIOSK, table, yaml_file
 
 HOME = "https://example.org/home#"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from afkb.extensions import extension_homes
 from afkb.knowledge import AfNet
-from afkb.ontology.extension import extension_homes
 from extension_samples import KIOSK, problems, table, yaml_file
 
 PROTEGE = """<?xml version="1.0"?>

@@ -11,12 +11,12 @@ from typer.testing import CliRunner
 from afkb.cli.app import build_cli
 from afkb.inference import Network
 from afkb.knowledge import AfNet
-from afkb.ontology.starters import Kind, write_starter
 from afkb.plugins import hookimpl
 from afkb.plugins.host import PluginHost
 from afkb.quality.checked import Checked
 from afkb.quality.pitfalls import check_pitfalls
 from afkb.quality.shape_check import check_shapes, read_shapes
+from afkb.starters import Kind, write_starter
 from afkb.store import query
 from afkb.testing import check_ontology
 from extension_samples import KIOSK, table, yaml_file

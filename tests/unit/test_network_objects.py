@@ -162,7 +162,9 @@ def test_closed_form_equals_variable_elimination(
 def test_a_weaker_afbit_lowers_its_category_and_no_other_order(tmp_path: Path) -> None:
     size, top = (0.09, 0.08, 0.09), 0.82
     before = Network.compile(AfNet())
-    changed = Network.compile(Copy().set("Mug.BasinPart.ContainAbility", "strength", 0.2).load(tmp_path))
+    changed = Network.compile(
+        Copy().set("Mug.BasinPart.ContainAbility", "strength", 0.2).load(tmp_path)
+    )
     old = before.category_posterior({"ContainAbility": 0.9}, size, top)
     new = changed.category_posterior({"ContainAbility": 0.9}, size, top)
     assert new["Mug"] < 0.5 * old["Mug"]

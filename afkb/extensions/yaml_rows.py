@@ -7,7 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from afkb.errors import KnowledgeError
-from afkb.ontology.extension_model import (
+from afkb.extensions.problems import Problems
+from afkb.extensions.sheet import ALL_TABLES, NAMESPACE, Sheet, number
+from afkb.extensions.sheet import Entry as SheetEntry
+from afkb.extensions.yaml_model import (
     SECTIONS,
     Category,
     Entry,
@@ -16,11 +19,8 @@ from afkb.ontology.extension_model import (
     Feature,
     Room,
 )
-from afkb.ontology.extension_problems import Problems
-from afkb.ontology.extension_sheet import ALL_TABLES, NAMESPACE, Sheet, number
-from afkb.ontology.extension_sheet import Entry as SheetEntry
-from afkb.ontology.extension_validation import validated
-from afkb.ontology.extension_yaml import Document, Path_, read_yaml
+from afkb.extensions.yaml_reading import Document, Path_, read_yaml
+from afkb.extensions.yaml_validation import validated
 from afkb.ontology.notation import read_afbit
 from afkb.ontology.tables import Row
 

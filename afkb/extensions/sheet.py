@@ -71,15 +71,6 @@ def label_of(name: str) -> str:
     return _WORD.sub(" ", name).lower()
 
 
-def slug(name: str) -> str:
-    """A name that may stand in an IRI.
-
-    >>> slug("my home (2)")
-    'my-home-2'
-    """
-    return re.sub(r"[^A-Za-z0-9_]+", "-", name).strip("-") or "extension"
-
-
 def number(value: float) -> str:
     """A number as the text of a cell."""
     return repr(float(value)) if value != int(value) else str(int(value))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from afkb.ontology.extension_problems import Problems
-from afkb.ontology.extension_statements import Statements
+from afkb.extensions.problems import Problems
+from afkb.extensions.statements import Statements
 from afkb.ontology.names import fragment
 
 _PROBABILITIES = ("strength", "matchingWeight", "rate")

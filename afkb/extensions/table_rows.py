@@ -8,8 +8,9 @@ from functools import cache
 from pathlib import Path
 
 from afkb.errors import KnowledgeError
-from afkb.ontology.extension_problems import Problems, nearest
-from afkb.ontology.extension_sheet import ALL_TABLES, NAMESPACE, Entry, Sheet, slug
+from afkb.extensions.problems import Problems, nearest
+from afkb.extensions.sheet import ALL_TABLES, NAMESPACE, Entry, Sheet
+from afkb.ontology.names import slug
 from afkb.ontology.tables import Row, read_file
 
 _MORE_COLUMNS = {"afbits": {"part", "pose", "scale"}}

@@ -1,4 +1,4 @@
-"""Extensions of the ontology, in YAML, tables or OWL: read, checked, and made into statements.
+"""Stacks extensions: each file is read and checked against those that are read before it.
 
     graph = extension_graph(Path("my-home.yaml"))
 
@@ -12,26 +12,22 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from rdflib import Graph, Literal, URIRef
-from rdflib.namespace import DCTERMS, OWL, RDF, RDFS
+from rdflib import Graph
 
 from afkb.errors import KnowledgeError
+from afkb.extensions.cell_check import check_cells
+from afkb.extensions.defaults import complete
+from afkb.extensions.owl_reading import OWL_SUFFIXES, owl_statements
+from afkb.extensions.problems import Problems
+from afkb.extensions.sheet import Sheet
+from afkb.extensions.sheet_graph import names_in, sheet_graph
+from afkb.extensions.statement_check import check_statements
+from afkb.extensions.statements import of_sheet, terms_of
+from afkb.extensions.table_rows import tables_sheet
+from afkb.extensions.terms import Terms, bundled_terms
+from afkb.extensions.yaml_rows import yaml_sheet
+from afkb.ontology.bundled import bundled_ontology
 from afkb.ontology.categories import completed
-from afkb.ontology.entity_classes import add_entity_classes
-from afkb.ontology.extension_afbits import afbit_rows, whole_afbits
-from afkb.ontology.extension_cells import check_cells
-from afkb.ontology.extension_check import check_statements
-from afkb.ontology.extension_defaults import complete
-from afkb.ontology.extension_owl import OWL_SUFFIXES, owl_statements
-from afkb.ontology.extension_problems import Problems
-from afkb.ontology.extension_rows import yaml_sheet
-from afkb.ontology.extension_sheet import Sheet, rows_of
-from afkb.ontology.extension_statements import of_sheet, terms_of
-from afkb.ontology.extension_tables import tables_sheet
-from afkb.ontology.extension_terms import Terms, bundled_terms
-from afkb.ontology.names import Names
-from afkb.ontology.schema import AFBITS
-from afkb.ontology.statements import add_individual
 
 YAML_SUFFIXES = (".yaml", ".yml")
 SUFFIXES = (*YAML_SUFFIXES, ".csv", *OWL_SUFFIXES)
@@ -49,7 +45,7 @@ def extension_graph(path: Path, earlier: Sequence[Path] = ()) -> Graph:
     sheet = stack.add(path)
     if sheet is None:
         raise KnowledgeError(f"{path}: OWL is read as it stands; give YAML or tables")
-    return _graph(sheet, stack.terms, stack.tables)
+    return sheet_graph(sheet, stack.terms, stack.tables)
 
 
 def read_stack(files: Sequence[Path]) -> dict[Path, Graph]:
@@ -66,7 +62,7 @@ def read_stack(files: Sequence[Path]) -> dict[Path, Graph]:
         try:
             sheet = stack.add(path)
             if sheet is not None:
-                graphs[path] = _graph(sheet, stack.terms, stack.tables)
+                graphs[path] = sheet_graph(sheet, stack.terms, stack.tables)
         except KnowledgeError as error:
             found += str(error).splitlines()
     if found:
@@ -90,8 +86,6 @@ def extension_homes(path: Path) -> list[Path]:
     """The tables of what homes hold that an extension brings, for the figures."""
     if path.suffix in OWL_SUFFIXES:
         return []
-    from afkb.knowledge import bundled_ontology
-
     problems = Problems(path.parent)
     sheet = _sheet(path, bundled_ontology().parent / "tables", problems)
     problems.raise_any()
@@ -102,8 +96,6 @@ class _Stack:
     """The terms that are known so far, file by file."""
 
     def __init__(self, ontology: Path | None) -> None:
-        from afkb.knowledge import bundled_ontology
-
         bundled = bundled_ontology()
         self.tables = bundled.parent / "tables"
         if ontology is None or ontology.resolve() == bundled.resolve():
@@ -119,7 +111,7 @@ class _Stack:
             statements = owl_statements(path)
         else:
             sheet = _checked_sheet(path, self.terms, self.tables, problems)
-            statements = of_sheet(sheet, _names(sheet, self.terms), problems)
+            statements = of_sheet(sheet, names_in(sheet, self.terms), problems)
         self.terms = check_statements(statements, self.terms, problems)
         problems.raise_any()
         return sheet
@@ -154,34 +146,3 @@ def _sheet(path: Path, tables: Path, problems: Problems) -> Sheet:
     raise KnowledgeError(
         f"{path}: no extension: files of an ontology end in {', '.join(SUFFIXES)}; rename it"
     )
-
-
-def _names(sheet: Sheet, terms: Terms) -> Names:
-    """The IRIs of names, as the sheet means them."""
-    return terms.resolver(sheet.iri, [e.name for e in sheet.entries if not e.table.parts])
-
-
-def _graph(sheet: Sheet, terms: Terms, tables: Path) -> Graph:
-    names = _names(sheet, terms)
-    graph = Graph()
-    _add_header(graph, sheet)
-    for entry in sheet.entries:
-        if entry.table is not AFBITS:
-            add_individual(graph, entry.table, entry.row, names)
-    afbits = afbit_rows(sheet, terms, tables)
-    for row in afbits:
-        add_individual(graph, AFBITS, row, names)
-    wholes = whole_afbits(afbits, sheet, terms, tables)
-    categories, groups = sheet.of("categories"), sheet.of("category_groups")
-    add_entity_classes(graph, rows_of(categories), rows_of(groups), wholes, names)
-    return graph
-
-
-def _add_header(graph: Graph, sheet: Sheet) -> None:
-    ontology = URIRef(sheet.iri.rstrip("#/"))
-    graph.add((ontology, RDF.type, OWL.Ontology))
-    graph.add((ontology, RDFS.label, Literal(sheet.label, lang="en")))
-    if sheet.license:
-        graph.add((ontology, DCTERMS.license, URIRef(sheet.license)))
-    if sheet.definition:
-        graph.add((ontology, DCTERMS.description, Literal(sheet.definition, lang="en")))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from afkb.ontology.extension_problems import Problems, nearest
-from afkb.ontology.extension_sheet import Entry, Sheet
+from afkb.extensions.problems import Problems, nearest
+from afkb.extensions.sheet import Entry, Sheet
 from afkb.ontology.names import KINDS, RELATIONS, STATUSES
 
 _NAME = re.compile(r"[A-Z][A-Za-z0-9_]*")

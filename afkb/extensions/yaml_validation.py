@@ -7,9 +7,9 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from afkb.ontology.extension_model import SECTIONS, Extension
-from afkb.ontology.extension_problems import Problems, nearest
-from afkb.ontology.extension_yaml import Document
+from afkb.extensions.problems import Problems, nearest
+from afkb.extensions.yaml_model import SECTIONS, Extension
+from afkb.extensions.yaml_reading import Document
 
 _MENDS = {
     "list_type": "write a list, as in [0.2, 0.4]",

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from afkb.ontology.extension_numbers import check_numbers
-from afkb.ontology.extension_problems import Problems, nearest
-from afkb.ontology.extension_statements import Statements, terms_of
-from afkb.ontology.extension_terms import Term, Terms
+from afkb.extensions.number_check import check_numbers
+from afkb.extensions.problems import Problems, nearest
+from afkb.extensions.statements import Statements, terms_of
+from afkb.extensions.terms import Term, Terms
 from afkb.ontology.names import AFN, SKOS, fragment
 
 _BROADER = SKOS + "broader"

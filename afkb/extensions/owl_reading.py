@@ -11,7 +11,7 @@ from xml.parsers import expat
 from pyoxigraph import Literal, NamedNode, RdfFormat, parse
 
 from afkb.errors import KnowledgeError
-from afkb.ontology.extension_statements import Statements
+from afkb.extensions.statements import Statements
 
 _FORMATS = {
     ".owl": RdfFormat.RDF_XML,

@@ -15,7 +15,7 @@ import yaml
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from afkb.errors import KnowledgeError
-from afkb.ontology.extension_problems import Problems
+from afkb.extensions.problems import Problems
 
 Path_ = tuple[str | int, ...]
 _WHOLE = re.compile(r"[-+]?[0-9]+")

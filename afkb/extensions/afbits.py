@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from afkb.extensions.sheet import Sheet, rows_of
+from afkb.extensions.terms import Terms
 from afkb.ontology.afbits import Afbit, draw_afbits
-from afkb.ontology.extension_sheet import Sheet, rows_of
-from afkb.ontology.extension_terms import Terms
 from afkb.ontology.rules import Rule, read_rules
 from afkb.ontology.subjects import Subject, read_subjects
 from afkb.ontology.tables import Row, read_table

@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 
 from afkb.errors import KnowledgeError
-from afkb.ontology.extension_sheet import ALL_TABLES, Entry, Sheet, label_of
-from afkb.ontology.extension_terms import ScaleLimits, Terms
+from afkb.extensions.sheet import ALL_TABLES, Entry, Sheet, label_of
+from afkb.extensions.terms import ScaleLimits, Terms
 from afkb.ontology.names import UNKNOWN_ROOM
 from afkb.ontology.tables import Row
 

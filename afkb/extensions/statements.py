@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 from rdflib import Graph, URIRef
 
-from afkb.ontology.extension_problems import Problems
-from afkb.ontology.extension_sheet import Sheet
-from afkb.ontology.extension_terms import WORD_OF, Term, Terms, scale_limits
+from afkb.extensions.problems import Problems
+from afkb.extensions.sheet import Sheet
+from afkb.extensions.terms import WORD_OF, Term, Terms, scale_limits
 from afkb.ontology.names import AFN, RDF_TYPE, SKOS, Names, fragment
 from afkb.ontology.statements import add_individual
 

@@ -6,8 +6,9 @@ from enum import StrEnum
 from pathlib import Path
 
 from afkb.errors import KnowledgeError
+from afkb.ontology.names import slug
 
-_FOLDER = Path(__file__).parent / "starter_files"
+_FOLDER = Path(__file__).parent / "files"
 
 
 class Kind(StrEnum):
@@ -59,8 +60,6 @@ def write_starter(path: Path, kind: Kind | None = None) -> list[Path]:
 
 
 def _write(source: Path, out: Path, named: Path) -> Path:
-    from afkb.ontology.extension_sheet import slug
-
     text = source.read_text(encoding="utf-8")
     text = text.replace("{name}", slug(named.stem)).replace("{file}", named.name)
     with out.open("x", encoding="utf-8", newline="") as file:
