@@ -5,6 +5,6 @@ What others use of it stands here. A file's way: `yaml_*`, `table_rows` or `owl_
 """
 
 from afkb.extensions.sheet_graph import sheet_graph
-from afkb.extensions.stack import extension_graph, extension_homes, read_stack
+from afkb.extensions.stack import extension_graph, extension_homes, files_behind, read_stack
 
-__all__ = ["extension_graph", "extension_homes", "read_stack", "sheet_graph"]
+__all__ = ["extension_graph", "extension_homes", "files_behind", "read_stack", "sheet_graph"]

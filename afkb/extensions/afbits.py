@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from afkb.csv_rows import Row
 from afkb.extensions.sheet import Sheet, rows_of
 from afkb.extensions.terms import Terms
 from afkb.ontology.afbits import Afbit, draw_afbits
 from afkb.ontology.rules import Rule, read_rules
 from afkb.ontology.subjects import Subject, read_subjects
-from afkb.ontology.tables import Row, read_table
+from afkb.ontology.tables import read_table
 
 
 def afbit_rows(sheet: Sheet, known: Terms, tables: Path) -> list[Row]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
+from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
 from afkb.extensions.sheet import ALL_TABLES, Entry, Sheet, label_of
 from afkb.extensions.terms import ScaleLimits, Terms
 from afkb.ontology.names import UNKNOWN_ROOM
-from afkb.ontology.tables import Row
 
 _EXTENTS = ("length", "width", "height")
 ELSEWHERE = 0.05

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from afkb.csv_rows import Row
 from afkb.ontology.schema import AFBITS, TABLES, Table
-from afkb.ontology.tables import Row
 
 ALL_TABLES = {table.name: table for table in (*TABLES, AFBITS)}
 NAMESPACE = "https://example.org/{}#"

@@ -28,6 +28,7 @@ from afkb.extensions.terms import Terms, bundled_terms
 from afkb.extensions.yaml_rows import yaml_sheet
 from afkb.ontology.bundled import bundled_ontology
 from afkb.ontology.categories import completed
+from afkb.ontology.heights import with_undersides
 
 YAML_SUFFIXES = (".yaml", ".yml")
 SUFFIXES = (*YAML_SUFFIXES, ".csv", *OWL_SUFFIXES)
@@ -92,6 +93,20 @@ def extension_homes(path: Path) -> list[Path]:
     return sheet.homes
 
 
+def files_behind(files: Sequence[Path]) -> list[Path]:
+    """The files and the tables of homes that they bring: all that decides what is read.
+
+    A file that can't be read brings none; whoever reads it says why.
+    """
+    found = list(files)
+    for path in files[1:]:
+        try:
+            found += [home for home in extension_homes(path) if home.is_file()]
+        except (KnowledgeError, OSError):
+            continue
+    return found
+
+
 class _Stack:
     """The terms that are known so far, file by file."""
 
@@ -129,7 +144,9 @@ def _checked_sheet(path: Path, terms: Terms, tables: Path, problems: Problems) -
     check_cells(sheet, problems)
     problems.raise_any()
     sheet.entries = [
-        replace(e, row=completed(e.row)) if e.table.name == "categories" else e
+        replace(e, row=with_undersides([completed(e.row)])[0])
+        if e.table.name == "categories"
+        else e
         for e in sheet.entries
     ]
     return sheet

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from afkb.csv_rows import Row, read_header
 from afkb.errors import KnowledgeError
 from afkb.extensions.problems import Problems, nearest
 from afkb.extensions.sheet import ALL_TABLES, NAMESPACE, Entry, Sheet
 from afkb.ontology.names import slug
-from afkb.ontology.tables import Row, read_file
+from afkb.ontology.tables import read_file
 
 _MORE_COLUMNS = {"afbits": {"part", "pose", "scale"}}
 """Columns that a table may have though the bundled one has no use for them."""
@@ -95,7 +95,6 @@ def _headers(tables: Path) -> dict[str, list[str]]:
     for name in ALL_TABLES:
         parts = [tables / f"{name}.csv", *sorted((tables / name).glob("*.csv"))]
         for part in (p for p in parts if p.is_file()):
-            with part.open(encoding="utf-8", newline="") as file:
-                found[name] = next(csv.reader(file), [])
+            found[name] = list(read_header(part))
             break
     return found

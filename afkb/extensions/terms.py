@@ -8,8 +8,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from afkb.csv_rows import Row
 from afkb.ontology.names import AFN, Names
-from afkb.ontology.tables import Row, read_table
+from afkb.ontology.tables import read_table
 
 WORD_OF = {
     "StructuralAffordance": "feature",

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
 from afkb.extensions.problems import Problems
 from afkb.extensions.sheet import ALL_TABLES, NAMESPACE, Sheet, number
@@ -22,7 +23,6 @@ from afkb.extensions.yaml_model import (
 from afkb.extensions.yaml_reading import Document, Path_, read_yaml
 from afkb.extensions.yaml_validation import validated
 from afkb.ontology.notation import read_afbit
-from afkb.ontology.tables import Row
 
 _TABLE_OF = {"groups": "category_groups"}
 _PAIRS = {

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from afkb.csv_rows import Row, csv_text, read_rows
 from afkb.errors import KnowledgeError
 from afkb.figures.counts import Building, Counts, Pair, RoomTally, Source
-from afkb.figures.rows import Row, read_rows
 from afkb.figures.totals import Totals, totals_of
 
 MANY_BUILDINGS = 20
@@ -36,7 +34,7 @@ def write_counts(counts: Counts, folder: Path) -> None:
         "pairs": (PAIRS, _pair_rows(counts, numbers)),
         "supports": (SUPPORTS, _support_rows(counts)),
     }
-    texts = {name: _text(header, rows) for name, (header, rows) in tables.items()}
+    texts = {name: csv_text(header, rows) for name, (header, rows) in tables.items()}
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():
@@ -132,14 +130,6 @@ def _joined(numbers: Mapping[str, int], key: type[int] | None = None) -> str:
     """Names with their numbers, as in `a:2|b`; 1 goes without saying."""
     names = sorted(numbers, key=key)
     return "|".join(n if numbers[n] == 1 else f"{n}:{numbers[n]}" for n in names)
-
-
-def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)
-    return text.getvalue()
 
 
 def _source(row: Row) -> Source:

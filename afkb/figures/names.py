@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from afkb.csv_rows import Row, read_rows
 from afkb.errors import KnowledgeError
-from afkb.figures.rows import Row, read_rows
 
 SOURCES = ("hm3d", "matterport", "bddl", "procthor", "virtualhome", "oewn")
 """Where names come from; where two sources mean different things by one name, the first is held."""

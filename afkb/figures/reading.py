@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
+from afkb.csv_rows import Row, read_header, read_rows
 from afkb.errors import KnowledgeError
 from afkb.figures.names import HOMES
-from afkb.figures.rows import Row, read_header, read_rows
 
 
 class Shape(StrEnum):

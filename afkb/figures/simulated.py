@@ -6,10 +6,10 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
+from afkb.csv_rows import read_rows
 from afkb.figures.counting import THINGS, UNNAMED, Unknown
 from afkb.figures.counts import ANY_ROOM, Building, Counts, RoomTally, Source
 from afkb.figures.names import Names
-from afkb.figures.rows import read_rows
 
 HOUSEHOLD_ROOMS = 300
 """The rooms over which the table of pairs was made (its header says so: lift_N=300)."""

@@ -77,7 +77,11 @@ class AfNet:
 
     @cached_property
     def _key(self) -> str:
-        return content_key(self.files)
+        if not self._extensions:
+            return content_key(self.files)
+        from afkb.extensions import files_behind
+
+        return content_key(files_behind(self.files))
 
     @cached_property
     def _facts(self) -> Facts:
@@ -147,6 +151,7 @@ class AfNet:
         tables = [table for file in self._extensions for table in extension_homes(file)]
         if not tables:
             return None
+        tables = list(dict.fromkeys(table.resolve() for table in tables))
         names = Names.load(bundled_ontology().parent / "tables").with_labels(
             {c.name: c.label for c in self.categories.values()},
             {r.name: r.label for r in self.rooms.values() if r.name != UNKNOWN_ROOM},

@@ -6,10 +6,10 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from afkb.csv_rows import Row
 from afkb.ontology.notation import write_afbit
 from afkb.ontology.rules import PROJECT, Rule, family_of
 from afkb.ontology.subjects import Subject
-from afkb.ontology.tables import Row
 
 Key = tuple[str, str, str]
 """Category, part (or an empty string), feature."""

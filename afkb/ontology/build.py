@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rdflib import Graph, URIRef
 
+from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
 from afkb.ontology.afbits import Afbit, draw_afbits
 from afkb.ontology.categories import completed
@@ -26,7 +27,7 @@ from afkb.ontology.rules import read_rules
 from afkb.ontology.schema import AFBITS, CO_OCCURRENCES, TABLES
 from afkb.ontology.statements import FROM_ROW, add_disjointness, add_individual, add_term
 from afkb.ontology.subjects import read_subjects
-from afkb.ontology.tables import Row, by_name, read_table
+from afkb.ontology.tables import by_name, read_table
 from afkb.ontology.writing import one_writer, put_whole
 
 if TYPE_CHECKING:

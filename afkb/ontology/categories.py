@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from afkb.ontology.tables import Row
+from afkb.csv_rows import Row
 
 MATCHING_WEIGHT = {"Fixed": 1.0, "RarelyMoved": 0.8, "OftenMoved": 0.4, "Carried": 0.3}
 """Weight of a thing when maps are matched, by moving habit; 0.3 is p_d of paper §II.D.i."""

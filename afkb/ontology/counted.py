@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from afkb.csv_rows import Row
 from afkb.ontology.schema import Table
-from afkb.ontology.tables import Row
 
 if TYPE_CHECKING:
     from afkb.figures import Figures
-    from afkb.figures.figures import Figure
+    from afkb.figures.figures import Figure, InRoom
 
 IN_ROOM = Table("figures", "ObjectInRoom", ("object", "room"), suffix="InRoom")
 TOGETHER = Table("figures", "ObjectWithObject", ("object", "given"), suffix="Together")
@@ -25,13 +25,7 @@ LEAST_LIFT, LEAST_P = 2.0, 0.3
 def counted_rows(figures: Figures) -> Iterator[tuple[Table, Row]]:
     """The figures that the ontology states: in rooms, beside each other and on supports."""
     for place in figures.in_rooms(LEAST_ROOMS):
-        cells = {
-            "object": place.category,
-            "room": place.room,
-            "label": f"P({place.category} in a {place.room})",
-            "mean_number": _number(place.number.mean),
-        }
-        yield IN_ROOM, _row("rooms.csv", cells, place.figure)
+        yield IN_ROOM, in_room_row(place)
     for pair in figures.together(LEAST_PAIRS):
         if pair.figure.p < max(LEAST_P, LEAST_LIFT * figures.base_rate(pair.category)):
             continue
@@ -42,6 +36,17 @@ def counted_rows(figures: Figures) -> Iterator[tuple[Table, Row]]:
         label = f"P({on.support} below | {on.thing})"
         cells = {"object": on.support, "given": on.thing, "label": label}
         yield ON_SUPPORT, _row("supports.csv", cells, on.figure)
+
+
+def in_room_row(place: InRoom) -> Row:
+    """The row that states how likely a category is in a room, and how many there are."""
+    cells = {
+        "object": place.category,
+        "room": place.room,
+        "label": f"P({place.category} in a {place.room})",
+        "mean_number": _number(place.number.mean),
+    }
+    return _row("rooms.csv", cells, place.figure)
 
 
 def _row(file: str, cells: dict[str, str], figure: Figure) -> Row:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from afkb.csv_rows import Row
 from afkb.ontology.afbits import Afbit
 from afkb.ontology.subjects import measures_of
-from afkb.ontology.tables import Row
 
 if TYPE_CHECKING:
     from afkb.figures import Figures

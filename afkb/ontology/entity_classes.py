@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from rdflib import BNode, Graph, Literal, URIRef
 from rdflib.namespace import OWL, RDF, RDFS, SKOS
 
+from afkb.csv_rows import Row
 from afkb.ontology.names import AFN, BUNDLED, SOMETHING_ELSE, Names
-from afkb.ontology.tables import Row
 
 STRONG = 0.9
 """Afbits of the whole thing at least this strong are necessary conditions of the class."""

@@ -14,9 +14,9 @@ from rdflib import BNode, Graph, Literal, URIRef
 from rdflib.namespace import DCTERMS, OWL, RDF, RDFS, SKOS, XSD
 from rdflib.term import Node
 
+from afkb.csv_rows import Row
 from afkb.ontology.entity_classes import class_name
 from afkb.ontology.names import AFN
-from afkb.ontology.tables import Row
 
 TABLE = "entity_definitions"
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from afkb.csv_rows import Row, csv_text, read_rows
 from afkb.errors import KnowledgeError
-from afkb.ontology.tables import Row
 
 _WORDNET = re.compile(r"wn:([\w'.-]+?\.n\.\d\d)")
 HEADER = ("category", "source", "property", "name", "found_in")
@@ -50,7 +48,7 @@ def gather(folder: Path, names: Iterable[Row]) -> dict[str, str]:
     lines: dict[str, list[tuple[str, ...]]] = {source: [] for source in tables}
     for (source, category), rows in sorted(wanted.items()):
         lines[source] += _evidence(tables[source], category, rows)
-    return {source: _csv(found) for source, found in lines.items()}
+    return {source: csv_text(HEADER, found) for source, found in lines.items()}
 
 
 def _evidence(table: PublicTable, category: str, rows: list[Row]) -> Iterator[tuple[str, ...]]:
@@ -68,16 +66,16 @@ def _evidence(table: PublicTable, category: str, rows: list[Row]) -> Iterator[tu
 def _virtualhome(folder: Path) -> PublicTable:
     file = "virtualhome_properties.csv"
     said = {
-        row["object"]: {p.strip(): place for p in row["properties"].split("|") if p.strip()}
-        for row, place in _rows(folder, file)
+        row["object"]: dict.fromkeys(row.several("properties"), row.place)
+        for row in _rows(folder, file)
     }
     return PublicTable("virtualhome", said)
 
 
 def _bddl(folder: Path) -> PublicTable:
     properties = {
-        row["synset"]: {p.strip(): place for p in row["properties"].split("|") if p.strip()}
-        for row, place in _rows(folder, "bddl_synset_properties.csv")
+        row["synset"]: dict.fromkeys(row.several("properties"), row.place)
+        for row in _rows(folder, "bddl_synset_properties.csv")
     }
     return PublicTable("bddl", {c: properties.get(s, {}) for c, s in _synsets(folder).items()})
 
@@ -85,13 +83,13 @@ def _bddl(folder: Path) -> PublicTable:
 def _wordnet(folder: Path) -> PublicTable:
     """A category's synset and its hypernyms, as far as two tables tell them."""
     above = {
-        row["synset"]: ([h.strip() for h in row["hypernyms"].split(",") if h.strip()], place)
-        for row, place in _rows(folder, "bddl_synset_properties.csv")
+        row["synset"]: ([h.strip() for h in row["hypernyms"].split(",") if h.strip()], row.place)
+        for row in _rows(folder, "bddl_synset_properties.csv")
     }
     said = {c: _hypernyms(s, above) for c, s in _synsets(folder).items()}
-    for row, place in _rows(folder, "object_affordance_draft.csv"):
+    for row in _rows(folder, "object_affordance_draft.csv"):
         for hypernym in _WORDNET.findall(row["rule_provenance"]):
-            said.setdefault(row["object"], {}).setdefault(hypernym, place)
+            said.setdefault(row["object"], {}).setdefault(hypernym, row.place)
     return PublicTable("wordnet", said)
 
 
@@ -110,35 +108,24 @@ def _hypernyms(synset: str, above: Mapping[str, tuple[list[str], str]]) -> dict[
 
 def _procthor(folder: Path) -> PublicTable:
     said: dict[str, dict[str, str]] = {}
-    for row, place in _rows(folder, "procthor_asset_dims_m.csv"):
-        said[row["object_type"]] = {"Asset": place}
-    for row, place in _rows(folder, "procthor_receptacle_given.csv"):
-        said.setdefault(row["receptacle"], {}).setdefault("Receptacle", place)
-    for row, place in _rows(folder, "procthor_placement.csv"):
+    for row in _rows(folder, "procthor_asset_dims_m.csv"):
+        said[row["object_type"]] = {"Asset": row.place}
+    for row in _rows(folder, "procthor_receptacle_given.csv"):
+        said.setdefault(row["receptacle"], {}).setdefault("Receptacle", row.place)
+    for row in _rows(folder, "procthor_placement.csv"):
         for column, name in (("isPickupable", "Pickupable"), ("onWall", "OnWall")):
             if row[column] == "True":
-                said.setdefault(row["object"], {})[name] = place
+                said.setdefault(row["object"], {})[name] = row.place
     return PublicTable("procthor", said)
 
 
 def _synsets(folder: Path) -> dict[str, str]:
     rows = _rows(folder, "bddl_category_synset_mass.csv")
-    return {row["category"]: row["synset"] for row, _ in rows}
+    return {row["category"]: row["synset"] for row in rows}
 
 
-def _rows(folder: Path, file: str) -> Iterator[tuple[dict[str, str], str]]:
+def _rows(folder: Path, file: str) -> Iterator[Row]:
     path = folder / file
     if not path.is_file():
         raise KnowledgeError(f"{path}: missing; give the folder that holds the public tables")
-    with path.open(encoding="utf-8", newline="") as stream:
-        reader = csv.DictReader(stream)
-        for row in reader:
-            yield row, f"{file}, line {reader.line_num}"
-
-
-def _csv(lines: Iterable[tuple[str, ...]]) -> str:
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(HEADER)
-    writer.writerows(lines)
-    return out.getvalue()
+    return read_rows(path, table=file)

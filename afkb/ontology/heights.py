@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
-from afkb.ontology.tables import Row
 
 if TYPE_CHECKING:
     from afkb.figures import Figures
@@ -19,7 +19,7 @@ _TAIL = 0.1
 """Share of the placements that is left out at either end."""
 
 
-def with_undersides(rows: Iterable[Row], figures: Figures | None) -> list[Row]:
+def with_undersides(rows: Iterable[Row], figures: Figures | None = None) -> list[Row]:
     """Category rows with the height of the underside above the floor, m, and where it is from.
 
     What stands on the floor has it there; what has a top at a known height, a height below that;

@@ -6,17 +6,15 @@ and from `units.csv`.
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from rdflib import Graph, URIRef
 
+from afkb.csv_rows import Row, csv_text, read_rows
 from afkb.errors import KnowledgeError
 from afkb.ontology.header import CREATED, LICENCE, MODIFIED
 from afkb.ontology.names import AFN, ONTOLOGY_IRI, VERSION
-from afkb.ontology.tables import Row
 
 HEADER = ("category", "wordnet_ili", "oewn", "wikidata", "status", "source")
 PUBLIC_TABLE = "object_oewn_ili_wikidata.csv"
@@ -71,28 +69,18 @@ def gather_links(folder: Path, names: Iterable[Row]) -> str:
     path = folder / PUBLIC_TABLE
     if not path.is_file():
         raise KnowledgeError(f"{path}: missing; give the folder that holds the public tables")
-    with path.open(encoding="utf-8", newline="") as file:
-        reader = csv.DictReader(file)
-        known = {row["object"]: (row, reader.line_num) for row in reader}
+    known = {row["object"]: row for row in read_rows(path, table=PUBLIC_TABLE)}
     lines = set()
     for name in names:
         if name["source"] != "oewn":
             continue
-        row, line = known.get(name["name"], ({}, 0))
-        if row.get("hypernym_check") != "1" or not row.get("oewn_synset"):
+        row = known.get(name["name"])
+        if row is None or row.get("hypernym_check") != "1" or not row.get("oewn_synset"):
             raise name.error(f"{name['name']!r} has no checked synset in {PUBLIC_TABLE}; remove it")
-        source = f"Open English WordNet by {PUBLIC_TABLE}, line {line}; hypernym check passed"
+        source = f"Open English WordNet by {row.place}; hypernym check passed"
         ids = (row["ili"], row["oewn_synset"], row["wikidata"])
         lines.add((name["category"], *ids, "taken from data", source))
-    return _csv(sorted(lines))
-
-
-def _csv(lines: Iterable[tuple[str, ...]]) -> str:
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(HEADER)
-    writer.writerows(lines)
-    return out.getvalue()
+    return csv_text(HEADER, sorted(lines))
 
 
 def check_links(graph: Graph, links: Iterable[Row], units: Iterable[Row]) -> None:

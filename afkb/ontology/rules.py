@@ -7,8 +7,8 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from afkb.csv_rows import Row
 from afkb.ontology.subjects import OWN_FAMILIES, Subject
-from afkb.ontology.tables import Row
 
 _MEASURE = re.compile(r"(\w+)(<=|>=|<|>)([0-9.]+)")
 _COMPARE: dict[str, Callable[[float, float], bool]] = {

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from rdflib import Literal, URIRef
 from rdflib.namespace import DCTERMS, RDFS, SKOS, XSD
 
+from afkb.csv_rows import Row
 from afkb.ontology.names import AFN, BUNDLED, Names
-from afkb.ontology.tables import Row
 
 _TEXT = {
     "label": RDFS.label,

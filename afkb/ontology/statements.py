@@ -9,9 +9,9 @@ from itertools import combinations
 from rdflib import Graph, Literal, URIRef
 from rdflib.namespace import DCTERMS, OWL, RDF, RDFS, SKOS, XSD
 
+from afkb.csv_rows import Row
 from afkb.ontology.names import AFN, BUNDLED, KINDS, Names
 from afkb.ontology.schema import Table
-from afkb.ontology.tables import Row
 
 FROM_ROW = URIRef(AFN + "fromRow")
 """Where a statement stands: file and line of its row."""

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from afkb.ontology.tables import Row, by_name
+from afkb.csv_rows import Row
+from afkb.ontology.tables import by_name
 
 _OWN = {
     "scale": "scale", "stands_on": "stands", "moved": "moved", "shape": "shape",

@@ -2,54 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from afkb.csv_rows import Row, read_lines
 from afkb.errors import KnowledgeError
 from afkb.ontology.names import STATUSES
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """One row of a table, with the place where it stands; empty cells are left out.
-
-    `table`: the file, from the folder of tables on, as in `categories/food.csv`.
-    """
-
-    table: str
-    line: int
-    cells: dict[str, str]
-
-    @property
-    def place(self) -> str:
-        """File and line, for messages; the file alone for what no single line says."""
-        return f"{self.table}, line {self.line}" if self.line else self.table
-
-    def error(self, problem: str) -> KnowledgeError:
-        """The error to raise about this row."""
-        return KnowledgeError(f"{self.place}: {problem}")
-
-    def __getitem__(self, column: str) -> str:
-        if column not in self.cells:
-            raise self.error(f"column {column!r} is empty or missing; fill it")
-        return self.cells[column]
-
-    def get(self, column: str) -> str:
-        """The cell, or an empty string."""
-        return self.cells.get(column, "")
-
-    def number(self, column: str) -> float:
-        """The cell as a number; `KnowledgeError` with the place where it is none."""
-        try:
-            return float(self[column])
-        except ValueError as error:
-            raise self.error(f"{column} {self[column]!r} is no number") from error
-
-    def several(self, column: str) -> list[str]:
-        """The parts of a cell that lists several things, `a|b|c`."""
-        return [part.strip() for part in self.get(column).split("|") if part.strip()]
 
 
 def read_table(folder: Path, name: str) -> list[Row]:
@@ -79,15 +37,13 @@ def by_name(rows: Iterable[Row]) -> dict[str, Row]:
 
 
 def read_file(path: Path, table: str) -> tuple[list[str], list[Row]]:
-    """The header and the rows of one CSV file, which messages call `table`; nothing is checked."""
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.DictReader(file, strict=True)
-            header = list(reader.fieldnames or ())
-            rows = [_row(table, reader, cells) for cells in reader]
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise KnowledgeError(f"{table}: not readable as CSV: {error}; save it as UTF-8") from error
-    return header, rows
+    """The header and the rows of one CSV file, which messages call `table`; nothing is checked.
+
+    Empty cells are left out, and so may be those at the end of a row.
+    """
+    lines = read_lines(path, table)
+    header = list(next(lines, (0, ()))[1])
+    return header, [_row(table, line, header, cells) for line, cells in lines]
 
 
 def _read_checked(path: Path, table: str) -> list[Row]:
@@ -98,13 +54,13 @@ def _read_checked(path: Path, table: str) -> list[Row]:
     return rows
 
 
-def _row(table: str, reader: csv.DictReader[str], cells: dict[str, str | list[str]]) -> Row:
-    if None in cells:
-        raise KnowledgeError(
-            f"{table}, line {reader.line_num}: more cells than the header has columns; "
-            'put "…" round a cell with a comma in it'
+def _row(table: str, line: int, header: Sequence[str], cells: Sequence[str]) -> Row:
+    row = Row(table, line, {c: cell for c, cell in zip(header, cells, strict=False) if cell})
+    if len(cells) > len(header):
+        raise row.error(
+            'more cells than the header has columns; put "…" round a cell with a comma in it'
         )
-    return Row(table, reader.line_num, {k: v for k, v in cells.items() if isinstance(v, str) and v})
+    return row
 
 
 def _check_provenance(row: Row) -> None:

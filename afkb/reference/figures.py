@@ -7,12 +7,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
+from afkb.csv_rows import Row
 from afkb.extensions import extension_homes
 from afkb.knowledge import AfNet
 from afkb.knowledge.facts import Facts
 from afkb.ontology.counted import counted_rows
 from afkb.ontology.names import DCTERMS, fragment
-from afkb.ontology.tables import Row
 
 T = TypeVar("T")
 CLASSES = ("ObjectInRoom", "ObjectWithObject", "ObjectOnSupport")

@@ -90,13 +90,21 @@ def load_closed(store: Store, files: Sequence[Path]) -> None:
     for path in files:
         if not path.exists():
             raise KnowledgeError(f"{path}: no such ontology file")
-    kept = cached_file("closed.nq", content_key(files), lambda: _closed(files))
+    kept = cached_file("closed.nq", _key(files), lambda: _closed(files))
     if kept is None:
         load_ontologies(store, files)
         close_ontology(store)
         return
     # Lenient: it was checked when it was first read, and reads in three quarters of the time.
     store.bulk_load(path=str(kept), format=RdfFormat.N_QUADS, lenient=True)
+
+
+def _key(files: Sequence[Path]) -> str:
+    if len(files) == 1:
+        return content_key(files)
+    from afkb.extensions import files_behind
+
+    return content_key(files_behind(files))
 
 
 def _closed(files: Sequence[Path]) -> bytes:
