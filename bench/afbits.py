@@ -17,8 +17,8 @@ from collections import Counter, defaultdict
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from afkb.csv_rows import Row
 from afkb.ontology.build import Tables
-from afkb.ontology.tables import Row
 
 ROUNDS = {
     "1: 100 categories, seed 20261122, rules then changed": "round-1",

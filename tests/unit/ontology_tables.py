@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from afkb.csv_rows import Row
 from afkb.ontology.subjects import Subject, measures_of
-from afkb.ontology.tables import Row
 
 _CUP = {
     "name": "Cup", "scale": "Small", "stands_on": "Support", "moved": "Carried",

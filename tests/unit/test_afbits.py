@@ -2,11 +2,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
 from afkb.ontology.afbits import Afbit, draw_afbits, summary
 from afkb.ontology.notation import read_afbit, write_afbit
 from afkb.ontology.rules import Rule
-from afkb.ontology.tables import Row
 from ontology_tables import row, rule, subject
 
 KINDS = {"ContainAbility": "structural", "BreakAbility": "material", "RingGrasp": "grasp"}

@@ -9,12 +9,13 @@ import pytest
 from rdflib import Graph, Namespace, URIRef
 from rdflib.namespace import DCTERMS, OWL, RDF, RDFS, SKOS
 
+from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
 from afkb.knowledge import bundled_ontology
 from afkb.ontology.build import build_ontology
 from afkb.ontology.links import PUBLIC_TABLE, gather_links, link_files
 from afkb.ontology.names import AFN, VERSION
-from afkb.ontology.tables import Row, read_table
+from afkb.ontology.tables import read_table
 from afkb.quality.reasoner import Triple, is_consistent, java, logical
 from small_ontology import small_tables
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from afkb.csv_rows import read_rows
 from afkb.figures import Counts, Figures, read_counts
-from afkb.figures.rows import read_rows
 
 ONTOLOGY = Path(__file__).parents[2] / "ontology"
 COUNT_AGAIN = "count again: see ontology/counts/README.md"

@@ -8,6 +8,7 @@ from rdflib import Graph, Namespace
 from rdflib.collection import Collection
 from rdflib.namespace import OWL
 
+from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
 from afkb.knowledge import bundled_ontology
 from afkb.ontology.build import Tables
@@ -21,7 +22,6 @@ from afkb.ontology.entity_definitions import (
 )
 from afkb.ontology.names import AFN, SOMETHING_ELSE
 from afkb.ontology.subjects import kinds_of
-from afkb.ontology.tables import Row
 
 A = Namespace(AFN)
 XML_SCHEMA = Namespace("http://www.w3.org/2001/XMLSchema#")
