@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from afkb.csv_rows import Row
-from afkb.csv_rows import Row
 from afkb.ontology.schema import Table
 
 if TYPE_CHECKING:

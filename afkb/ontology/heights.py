@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from afkb.csv_rows import Row
-from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
 
 if TYPE_CHECKING:
