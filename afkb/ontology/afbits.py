@@ -115,6 +115,7 @@ def draw_afbits(
     for a row about a category, feature or verdict that there is not, and for a second one.
     """
     known = {subject.name: subject for subject in subjects}
+    rules = list(rules)
     drawn: dict[Key, Afbit] = {}
     for row in stated:
         key = _key(row, known, kinds)
@@ -131,16 +132,22 @@ def draw_afbits(
             raise row.error(f"verdict {row['verdict']!r} is none of: {', '.join(VERDICTS)}")
         key = _key(row, known, kinds)
         if row["verdict"] == "missing" and key not in drawn:
-            drawn[key] = Afbit(key, known[key[0]], kinds[key[2]], stated=_supplied(row))
+            drawn[key] = Afbit(key, known[key[0]], kinds[key[2]], stated=_supplied(row, rules))
         if key in drawn:
             drawn[key].verdict = row
     return [drawn[key] for key in sorted(drawn)]
 
 
-def _supplied(row: Row) -> Row:
-    """What a review found missing, as a row of its own."""
+def _supplied(row: Row, rules: Iterable[Rule]) -> Row:
+    """What a review found missing, as a row of its own, in the pose in which rules say the like."""
     reason = f"supplied by the review: {row['reason']}"
     said = {"strength": str(SUPPLIED_STRENGTH), "status": "proposed", "source": reason}
+    alike = [rule.row for rule in rules if rule.row["feature"] == row["feature"]]
+    closer = [rule for rule in alike if rule.get("part") == row.get("part")]
+    usual = next(iter(closer or alike), None)
+    if usual is not None:
+        said["pose"] = usual.get("pose")
+        said["scale"] = usual.get("scale") if closer else ""
     return replace(row, cells=row.cells | said)
 
 
