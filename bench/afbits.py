@@ -18,7 +18,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from afkb.csv_rows import Row
-from afkb.ontology.build import Tables
+from afkb.ontology.table_folder import Tables
 
 ROUNDS = {
     "1: 100 categories, seed 20261122, rules then changed": "round-1",

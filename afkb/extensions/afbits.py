@@ -8,7 +8,7 @@ from pathlib import Path
 from afkb.csv_rows import Row
 from afkb.extensions.sheet import Sheet, rows_of
 from afkb.extensions.terms import Terms
-from afkb.ontology.afbits import Afbit, draw_afbits
+from afkb.ontology.afbits import DrawnAfbit, draw_afbits, whole_afbits
 from afkb.ontology.rules import Rule, read_rules
 from afkb.ontology.subjects import Subject, read_subjects
 from afkb.ontology.tables import read_table
@@ -21,7 +21,7 @@ def afbit_rows(sheet: Sheet, known: Terms, tables: Path) -> list[Row]:
     the thing as a whole; strength 0 takes one away. `tables`: the folder that holds the rules.
     """
     own = rows_of(sheet.of("afbits"))
-    kinds = {name: term.kind for name, term in known.by_word.get("feature", {}).items()}
+    kinds = _kinds(known)
     subjects = _subjects(sheet, known)
     new = {subject.name for subject in subjects}
     drawn = draw_afbits(
@@ -55,7 +55,7 @@ def _bundled(name: str, known: Terms) -> Subject:
     return Subject(Row("", 0, {"name": name, "scale": term.scale or "Medium"}), {})
 
 
-def _kept(afbits: Sequence[Afbit]) -> Iterator[Afbit]:
+def _kept(afbits: Sequence[DrawnAfbit]) -> Iterator[DrawnAfbit]:
     whole = {(a.key[0], a.key[2]) for a in afbits if a.stated is not None and not a.key[1]}
     for afbit in afbits:
         overruled = afbit.stated is None and (afbit.key[0], afbit.key[2]) in whole
@@ -64,20 +64,19 @@ def _kept(afbits: Sequence[Afbit]) -> Iterator[Afbit]:
             yield afbit
 
 
-def _placed(afbit: Afbit) -> Row:
+def _placed(afbit: DrawnAfbit) -> Row:
     """The row of an afbit; one that a rule makes stands where its category does."""
     row = afbit.row()
     place = afbit.stated or afbit.subject.row
     return Row(place.table, place.line, row.cells)
 
 
-def whole_afbits(rows: Iterable[Row], sheet: Sheet, known: Terms, tables: Path) -> list[Row]:
+def own_afbits(rows: Iterable[Row], sheet: Sheet, known: Terms, tables: Path) -> list[Row]:
     """The rows of structural and material afbits that are met as the thing's own."""
     parts = [*read_table(tables, "parts"), *rows_of(sheet.of("parts"))]
-    wholes = {"", *(part["name"] for part in parts if part.get("whole") == "yes")}
-    features = known.by_word.get("feature", {})
-    return [
-        row
-        for row in rows
-        if row.get("part") in wholes and features[row["feature"]].kind != "grasp"
-    ]
+    return whole_afbits(rows, parts, _kinds(known))
+
+
+def _kinds(known: Terms) -> dict[str, str]:
+    """Feature to structural, material or grasp."""
+    return {name: term.kind for name, term in known.by_word.get("feature", {}).items()}

@@ -8,20 +8,12 @@ from pathlib import Path
 from urllib.parse import urljoin
 from xml.parsers import expat
 
-from pyoxigraph import Literal, NamedNode, RdfFormat, parse
+from pyoxigraph import Literal, NamedNode, RdfFormat
 
-from afkb.errors import KnowledgeError
 from afkb.extensions.statements import Statements
+from afkb.ontology.names import RDF
+from afkb.ontology.rdf_files import RDF_FORMATS, read_triples
 
-_FORMATS = {
-    ".owl": RdfFormat.RDF_XML,
-    ".rdf": RdfFormat.RDF_XML,
-    ".xml": RdfFormat.RDF_XML,
-    ".ttl": RdfFormat.TURTLE,
-    ".nt": RdfFormat.N_TRIPLES,
-}
-OWL_SUFFIXES = tuple(_FORMATS)
-_RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
 _XML_BASE = "http://www.w3.org/XML/1998/namespace base"
 
 
@@ -31,38 +23,17 @@ def owl_statements(path: Path) -> Statements:
     `KnowledgeError`, with the line where it is known, for a file that can't be read.
     """
     statements = Statements(file=path.name)
-    form = _FORMATS[path.suffix]
-    try:
-        for triple in parse(path=str(path), format=form):
-            subject, value = triple.subject, triple.object
-            if isinstance(subject, NamedNode):
-                text = value.value if isinstance(value, NamedNode | Literal) else str(value)
-                statements.add(subject.value, triple.predicate.value, text)
-    except (SyntaxError, ValueError, OSError) as error:
-        line = getattr(error, "lineno", None)
-        if line is None and form is RdfFormat.RDF_XML:
-            line = _broken_line(path)
-        where = f", line {line}" if line else ""
-        said = " ".join(str(error.args[0] if error.args else "unreadable").split())
-        raise KnowledgeError(
-            f"{path}{where}: not readable as {form.name}: {said}; save it as RDF/XML or Turtle"
-        ) from error
+    for triple in read_triples(path):
+        subject, value = triple.subject, triple.object
+        if isinstance(subject, NamedNode):
+            text = value.value if isinstance(value, NamedNode | Literal) else str(value)
+            statements.add(subject.value, triple.predicate.value, text)
+    form = RDF_FORMATS[path.suffix]
     if form is RdfFormat.RDF_XML:
         statements.places = _Lines(path).places()
     elif form is RdfFormat.TURTLE:
         statements.places = _turtle_places(path, statements)
     return statements
-
-
-def _broken_line(path: Path) -> int | None:
-    """The line at which a file stops being XML, or None where it is XML."""
-    try:
-        expat.ParserCreate().Parse(path.read_bytes(), True)
-    except expat.ExpatError as error:
-        return error.lineno
-    except OSError:
-        return None
-    return None
 
 
 class _Lines:
@@ -98,7 +69,7 @@ class _Lines:
         self._subjects.append(subject)
 
     def _subject(self, attributes: Mapping[str, str]) -> str | None:
-        about, name = attributes.get(f"{_RDF} about"), attributes.get(f"{_RDF} ID")
+        about, name = attributes.get(f"{RDF} about"), attributes.get(f"{RDF} ID")
         if about is not None:
             return urljoin(self._bases[-1], about) if "://" not in about else about
         return f"{self._bases[-1].split('#')[0]}#{name}" if name is not None else None

@@ -7,7 +7,7 @@ from pathlib import Path
 from rdflib import Graph, Literal, URIRef
 from rdflib.namespace import DCTERMS, OWL, RDF, RDFS
 
-from afkb.extensions.afbits import afbit_rows, whole_afbits
+from afkb.extensions.afbits import afbit_rows, own_afbits
 from afkb.extensions.homes import home_rows
 from afkb.extensions.sheet import Sheet, rows_of
 from afkb.extensions.terms import Terms
@@ -33,7 +33,7 @@ def sheet_graph(sheet: Sheet, terms: Terms, tables: Path) -> Graph:
         add_individual(graph, AFBITS, row, names)
     for table, row in home_rows(sheet, terms, tables):
         add_individual(graph, table, row, names)
-    wholes = whole_afbits(afbits, sheet, terms, tables)
+    wholes = own_afbits(afbits, sheet, terms, tables)
     categories, groups = sheet.of("categories"), sheet.of("category_groups")
     add_entity_classes(graph, rows_of(categories), rows_of(groups), wholes, names)
     return graph

@@ -17,7 +17,7 @@ from rdflib import Graph
 from afkb.errors import KnowledgeError
 from afkb.extensions.cell_check import check_cells
 from afkb.extensions.defaults import complete
-from afkb.extensions.owl_reading import OWL_SUFFIXES, owl_statements
+from afkb.extensions.owl_reading import owl_statements
 from afkb.extensions.problems import Problems
 from afkb.extensions.sheet import Sheet
 from afkb.extensions.sheet_graph import names_in, sheet_graph
@@ -29,9 +29,10 @@ from afkb.extensions.yaml_rows import yaml_sheet
 from afkb.ontology.bundled import bundled_ontology
 from afkb.ontology.categories import completed
 from afkb.ontology.heights import with_undersides
+from afkb.ontology.rdf_files import RDF_FORMATS
 
 YAML_SUFFIXES = (".yaml", ".yml")
-SUFFIXES = (*YAML_SUFFIXES, ".csv", *OWL_SUFFIXES)
+SUFFIXES = (*YAML_SUFFIXES, ".csv", *RDF_FORMATS)
 
 
 def extension_graph(path: Path, earlier: Sequence[Path] = ()) -> Graph:
@@ -85,7 +86,7 @@ def _once(files: Sequence[Path]) -> list[Path]:
 
 def extension_homes(path: Path) -> list[Path]:
     """The tables of what homes hold that an extension brings, for the figures."""
-    if path.suffix in OWL_SUFFIXES:
+    if path.suffix in RDF_FORMATS:
         return []
     problems = Problems(path.parent)
     sheet = _sheet(path, bundled_ontology().parent / "tables", problems)
@@ -122,7 +123,7 @@ class _Stack:
         """Check a file and take in its terms; its rows, or None for OWL."""
         problems = Problems(path.parent)
         sheet = None
-        if path.suffix in OWL_SUFFIXES:
+        if path.suffix in RDF_FORMATS:
             statements = owl_statements(path)
         else:
             sheet = _checked_sheet(path, self.terms, self.tables, problems)

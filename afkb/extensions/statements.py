@@ -10,7 +10,7 @@ from rdflib import Graph, URIRef
 from afkb.extensions.problems import Problems
 from afkb.extensions.sheet import Sheet
 from afkb.extensions.terms import WORD_OF, Term, Terms, scale_limits
-from afkb.ontology.names import AFN, RDF_TYPE, SKOS, Names, fragment
+from afkb.ontology.names import AFN, RDF_TYPE, SKOS, Names, fragment, property_iri
 from afkb.ontology.statements import add_individual
 
 _KEYS = {
@@ -42,7 +42,7 @@ class Statements:
 
     def many(self, subject: str, prop: str) -> list[str]:
         """The values of a property of the ontology, or of one by its IRI."""
-        return self.values.get(subject, {}).get(full(prop), [])
+        return self.values.get(subject, {}).get(property_iri(prop), [])
 
     def one(self, subject: str, prop: str) -> str:
         """The first value, or an empty string."""
@@ -50,7 +50,7 @@ class Statements:
 
     def place(self, subject: str, prop: str = "") -> str:
         """File and line where a subject's property is stated, or the subject itself."""
-        found = self.places.get((subject, full(prop) if prop else ""))
+        found = self.places.get((subject, property_iri(prop) if prop else ""))
         return found or self.places.get((subject, ""), self.file)
 
     def keyed(self) -> Iterator[tuple[tuple[str, ...], str]]:
@@ -95,11 +95,6 @@ def defines(statements: Statements, subject: str) -> bool:
     Editors repeat the type of another file's individual; that defines nothing.
     """
     return any(prop != RDF_TYPE for prop in statements.values.get(subject, {}))
-
-
-def full(prop: str) -> str:
-    """The IRI of a property of the ontology; an IRI stays as it is."""
-    return prop if ":" in prop else AFN + prop
 
 
 def of_sheet(sheet: Sheet, names: Names, problems: Problems) -> Statements:

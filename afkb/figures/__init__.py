@@ -2,7 +2,8 @@
 
 from afkb.figures.counting import count_rooms
 from afkb.figures.counts import Counts
-from afkb.figures.figures import Figure, Figures, InRoom, OnSupport, Rate, Together
+from afkb.figures.figure import Figure, InRoom, OnSupport, Rate, Together
+from afkb.figures.figures import Figures
 from afkb.figures.files import read_counts, write_counts
 from afkb.figures.names import Names
 from afkb.figures.reading import Shape

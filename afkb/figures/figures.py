@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 from afkb.errors import KnowledgeError
 from afkb.figures.counts import ANY_ROOM, Counts
+from afkb.figures.figure import Figure, InRoom, OnSupport, Rate, Together
 from afkb.figures.files import read_counts
+from afkb.figures.pooling import (
+    joined_names,
+    number_where_any,
+    rate_anywhere,
+    weighted_sum,
+    what_is_behind,
+)
 from afkb.figures.smoothing import (
     PAIR_WEIGHT,
     ROOM_WEIGHT,
@@ -24,60 +31,6 @@ from afkb.figures.totals import Totals, totals_of
 
 SUPPORT_ORDER = ("procthor", "virtualhome")
 """Who is asked for supports, first to last: ProcTHOR counts, VirtualHome lists what is possible."""
-
-
-@dataclass(frozen=True, slots=True)
-class Figure:
-    """A probability, smoothed, and what it rests on.
-
-    `successes` of `trials` rooms (or placements); a source's unit may be worth a part of a room.
-    `buildings` hold the trials; simulated sources don't tell theirs and count none.
-    """
-
-    p: float
-    successes: float
-    trials: float
-    buildings: int
-    source: str
-
-
-@dataclass(frozen=True, slots=True)
-class Rate:
-    """The mean number of things in a room, smoothed, and what it rests on."""
-
-    mean: float
-    things: float
-    rooms: float
-    buildings: int
-    source: str
-
-
-@dataclass(frozen=True, slots=True)
-class InRoom:
-    """How likely a category is in a room of a category, and how many there are on average."""
-
-    category: str
-    room: str
-    figure: Figure
-    number: Rate
-
-
-@dataclass(frozen=True, slots=True)
-class Together:
-    """How likely a category is in a room that holds the given one."""
-
-    category: str
-    given: str
-    figure: Figure
-
-
-@dataclass(frozen=True, slots=True)
-class OnSupport:
-    """How likely a thing of the category, where it is put, is put there."""
-
-    thing: str
-    support: str
-    figure: Figure
 
 
 class Figures:
@@ -139,18 +92,18 @@ class Figures:
         Raises `KnowledgeError` for a category of which no source has a name.
         """
         totals = self._telling(category, lambda t: t.rooms[room])
-        successes = _sum(totals, lambda t: t.holding[room, category])
-        trials = _sum(totals, lambda t: t.rooms[room])
-        anywhere = _base_rate(totals, category)
+        successes = weighted_sum(totals, lambda t: t.holding[room, category])
+        trials = weighted_sum(totals, lambda t: t.rooms[room])
+        anywhere = rate_anywhere(totals, category)
         p = beta_mean(successes, trials, anywhere, self._room_weight)
         whole = self._whole_behind(totals, category)
         if whole:
-            p = odds_shifted(_base_rate(whole, category), p, anywhere)
-        return Figure(p, successes, trials, *_behind(totals, room, whole))
+            p = odds_shifted(rate_anywhere(whole, category), p, anywhere)
+        return Figure(p, successes, trials, *what_is_behind(totals, room, whole))
 
     def base_rate(self, category: str) -> float:
         """P(a room, of whatever category, holds a thing of the category)."""
-        return _base_rate(self._telling(category, lambda t: t.named_rooms), category)
+        return rate_anywhere(self._telling(category, lambda t: t.named_rooms), category)
 
     def number_in_room(self, category: str, room: str) -> Rate:
         """Mean number of the category's things in a room: Gamma-Poisson about the mean anywhere.
@@ -158,15 +111,15 @@ class Figures:
         Where viewpoints answer, P(it holds one) times how many a room has that holds one.
         """
         totals = self._telling(category, lambda t: t.rooms[room])
-        things = _sum(totals, lambda t: t.things[room, category])
-        rooms = _sum(totals, lambda t: t.rooms[room])
-        anywhere = _sum(totals, lambda t: t.named_things[category]) + 0.5
-        mean = anywhere / (_sum(totals, lambda t: t.named_rooms) + 1)
+        things = weighted_sum(totals, lambda t: t.things[room, category])
+        rooms = weighted_sum(totals, lambda t: t.rooms[room])
+        anywhere = weighted_sum(totals, lambda t: t.named_things[category]) + 0.5
+        mean = anywhere / (weighted_sum(totals, lambda t: t.named_rooms) + 1)
         smoothed = gamma_mean(things, rooms, mean, self._room_weight)
         whole = self._whole_behind(totals, category)
         if whole:
-            smoothed = self.object_in_room(category, room).p * _number_where_any(whole, category)
-        return Rate(smoothed, things, rooms, *_behind(totals, room, whole))
+            smoothed = self.object_in_room(category, room).p * number_where_any(whole, category)
+        return Rate(smoothed, things, rooms, *what_is_behind(totals, room, whole))
 
     def object_with_object(self, category: str, given: str) -> Figure:
         """P(a room that holds the given category holds the other): Beta about the rate anywhere.
@@ -179,15 +132,15 @@ class Figures:
         told = self._first(paired, lambda t: t.holding_anywhere[given])
         totals = told or self._first(self._knowing(category), lambda t: t.rooms.total())
         anywhere = general_rate(
-            _sum(totals, lambda t: t.holding_anywhere[category]),
-            _sum(totals, lambda t: t.rooms.total()),
+            weighted_sum(totals, lambda t: t.holding_anywhere[category]),
+            weighted_sum(totals, lambda t: t.rooms.total()),
         )
         pair = (min(category, given), max(category, given))
-        successes = _sum(told, lambda t: t.pairs[pair])
-        trials = _sum(told, lambda t: t.holding_anywhere[given])
+        successes = weighted_sum(told, lambda t: t.pairs[pair])
+        trials = weighted_sum(told, lambda t: t.holding_anywhere[given])
         p = beta_mean(successes, trials, anywhere, self._pair_weight)
         buildings = sum(t.buildings_holding[given] for t in told)
-        return Figure(p, successes, trials, buildings, _named(t.source.name for t in totals))
+        return Figure(p, successes, trials, buildings, joined_names(t.source.name for t in totals))
 
     def support_of(self, thing: str) -> dict[str, Figure]:
         """P(it stands on a thing of that category | where the thing is put), likeliest first.
@@ -269,31 +222,3 @@ class Figures:
             if name == source:
                 total.update(supports)
         return {support: number / total.total() for support, number in total.items()}
-
-
-def _sum(totals: Collection[Totals], count: Callable[[Totals], int]) -> float:
-    return sum(t.source.weight * count(t) for t in totals)
-
-
-def _base_rate(totals: Collection[Totals], category: str) -> float:
-    return general_rate(
-        _sum(totals, lambda t: t.named_holding[category]), _sum(totals, lambda t: t.named_rooms)
-    )
-
-
-def _number_where_any(totals: Collection[Totals], category: str) -> float:
-    holding = _sum(totals, lambda t: t.named_holding[category])
-    return (_sum(totals, lambda t: t.named_things[category]) + 0.5) / (holding + 0.5)
-
-
-def _behind(
-    totals: Collection[Totals], room: str, whole: Collection[Totals] = ()
-) -> tuple[int, str]:
-    """How many buildings have such rooms, and whose they are."""
-    about = f", about the rate of {_named(t.source.name for t in whole)}" if whole else ""
-    buildings = sum(t.buildings_with[room] for t in totals)
-    return buildings, _named(t.source.name for t in totals) + about
-
-
-def _named(sources: Iterator[str] | Mapping[str, object]) -> str:
-    return " + ".join(sorted(sources))

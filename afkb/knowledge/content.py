@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from afkb.knowledge import reading
 from afkb.knowledge.consistency import check_references
 from afkb.knowledge.facts import Facts, read_facts
+from afkb.knowledge.item_reading import read_all
 from afkb.knowledge.model import (
     Afbit,
     Category,
@@ -20,6 +20,13 @@ from afkb.knowledge.model import (
     RoomCategory,
     Scale,
 )
+from afkb.knowledge.relation_reading import (
+    read_co_occurrence,
+    read_dual,
+    read_evidence_class,
+    read_rooms,
+)
+from afkb.knowledge.thing_reading import read_afbits, read_categories, read_features, read_scale
 from afkb.ontology.names import fragment
 
 
@@ -42,19 +49,19 @@ class Content:
 def read_content(files: Sequence[Path]) -> Content:
     """Read the files and check that what they refer to exists; `KnowledgeError` with the file."""
     facts = read_facts(files)
-    scales = reading.read_all(facts, "Scale", reading.read_scale)
-    duals = reading.read_all(facts, "Dual", reading.read_dual)
-    pairs = reading.read_all(facts, "CoOccurrence", reading.read_co_occurrence)
-    afbits = reading.read_afbits(facts)
+    scales = read_all(facts, "Scale", read_scale)
+    duals = read_all(facts, "Dual", read_dual)
+    pairs = read_all(facts, "CoOccurrence", read_co_occurrence)
+    afbits = read_afbits(facts)
     content = Content(
-        features=reading.read_features(facts),
+        features=read_features(facts),
         scales=MappingProxyType(dict(sorted(scales.items(), key=lambda s: s[1].extent_m))),
-        categories=reading.read_categories(facts, afbits),
+        categories=read_categories(facts, afbits),
         afbits=afbits,
         duals=tuple(duals[name] for name in sorted(duals)),
         co_occurrences=tuple(pairs[name] for name in sorted(pairs)),
-        evidence_classes=reading.read_all(facts, "EvidenceClass", reading.read_evidence_class),
-        rooms=reading.read_rooms(facts),
+        evidence_classes=read_all(facts, "EvidenceClass", read_evidence_class),
+        rooms=read_rooms(facts),
         parameters=MappingProxyType(
             {
                 name: facts.number(iri, "value")

@@ -8,14 +8,10 @@ from dataclasses import dataclass
 
 from pyoxigraph import BlankNode, Literal, NamedNode, Store
 
-from afkb.ontology.names import AFN, SKOS
+from afkb.ontology.names import AFN, OWL, RDF, RDFS, SKOS, XSD
 
-_RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
-_RDFS = "http://www.w3.org/2000/01/rdf-schema#"
-_OWL = "http://www.w3.org/2002/07/owl#"
-_XSD = "http://www.w3.org/2001/XMLSchema#"
-_THING = NamedNode(_OWL + "Thing")
-SUBCLASS = NamedNode(_RDFS + "subClassOf")
+_THING = NamedNode(OWL + "Thing")
+SUBCLASS = NamedNode(RDFS + "subClassOf")
 BROADER = NamedNode(SKOS + "broader")
 Limits = tuple[float, float]
 AFFORDS, SCALE, Z = (NamedNode(AFN + name) for name in ("affords", "scale", "z"))
@@ -59,7 +55,7 @@ class ThingFacts:
 
 
 @dataclass(frozen=True, slots=True)
-class Definition:
+class DefinedClass:
     """A class and all that makes a thing one: classes, affordances, scales, ranges of z."""
 
     name: str
@@ -105,7 +101,7 @@ class Definitions:
     domains: Mapping[str, list[str]]
     ranges: Mapping[str, list[str]]
     entity_classes: Mapping[str, list[str]]
-    defined: tuple[Definition, ...]
+    defined: tuple[DefinedClass, ...]
 
     @classmethod
     def read(cls, store: Store) -> Definitions:
@@ -115,8 +111,8 @@ class Definitions:
             above={name: upwards(name, steps) for name in steps},
             broader={name: upwards(name, broader) for name in broader},
             implied=_implied(store),
-            domains=links(store, NamedNode(_RDFS + "domain")),
-            ranges=links(store, NamedNode(_RDFS + "range")),
+            domains=links(store, NamedNode(RDFS + "domain")),
+            ranges=links(store, NamedNode(RDFS + "range")),
             entity_classes=links(store, NamedNode(AFN + "entityClass")),
             defined=tuple(_definitions(store)),
         )
@@ -133,18 +129,18 @@ def _implied(store: Store) -> dict[str, frozenset[str]]:
     return {name: frozenset(features) for name, features in found.items()}
 
 
-def _definitions(store: Store) -> Iterator[Definition]:
+def _definitions(store: Store) -> Iterator[DefinedClass]:
     """The classes that are equivalent to an intersection of what this module understands."""
-    for quad in store.quads_for_pattern(None, NamedNode(_OWL + "equivalentClass"), None, None):
+    for quad in store.quads_for_pattern(None, NamedNode(OWL + "equivalentClass"), None, None):
         if not isinstance(quad.subject, NamedNode) or not isinstance(quad.object, BlankNode):
             continue
-        members = _one(store, quad.object, _OWL + "intersectionOf")
+        members = _one(store, quad.object, OWL + "intersectionOf")
         definition = _read_definition(store, quad.subject.value, _items(store, members))
         if definition is not None:
             yield definition
 
 
-def _read_definition(store: Store, name: str, members: Iterable[object]) -> Definition | None:
+def _read_definition(store: Store, name: str, members: Iterable[object]) -> DefinedClass | None:
     classes, affords, scales, ranges = set(), set(), set(), []
     for member in members:
         if isinstance(member, NamedNode):
@@ -161,27 +157,27 @@ def _read_definition(store: Store, name: str, members: Iterable[object]) -> Defi
             return None
     if not affords | classes:
         return None
-    return Definition(
+    return DefinedClass(
         name, frozenset(classes), frozenset(affords), frozenset(scales), frozenset(ranges)
     )
 
 
 def _value_of(store: Store, restriction: BlankNode, prop: NamedNode) -> str | None:
-    if _one(store, restriction, _OWL + "onProperty") != prop:
+    if _one(store, restriction, OWL + "onProperty") != prop:
         return None
-    value = _one(store, restriction, _OWL + "hasValue")
+    value = _one(store, restriction, OWL + "hasValue")
     return value.value if isinstance(value, NamedNode) else None
 
 
 def _limits(store: Store, restriction: BlankNode) -> Limits | None:
     """The range of z that a restriction asks for, ends included."""
-    if _one(store, restriction, _OWL + "onProperty") != Z:
+    if _one(store, restriction, OWL + "onProperty") != Z:
         return None
-    data_range = _one(store, restriction, _OWL + "someValuesFrom")
-    facets = _one(store, data_range, _OWL + "withRestrictions")
+    data_range = _one(store, restriction, OWL + "someValuesFrom")
+    facets = _one(store, data_range, OWL + "withRestrictions")
     low, high = float("-inf"), float("inf")
     for facet in _items(store, facets):
-        least, most = (_one(store, facet, _XSD + f"{end}Inclusive") for end in ("min", "max"))
+        least, most = (_one(store, facet, XSD + f"{end}Inclusive") for end in ("min", "max"))
         low = max(low, float(least.value)) if isinstance(least, Literal) else low
         high = min(high, float(most.value)) if isinstance(most, Literal) else high
     return (low, high) if (low, high) != (float("-inf"), float("inf")) else None
@@ -195,6 +191,6 @@ def _one(store: Store, subject: object, predicate: str) -> object:
 
 
 def _items(store: Store, node: object) -> Iterator[object]:
-    while node is not None and node != NamedNode(_RDF + "nil"):
-        yield _one(store, node, _RDF + "first")
-        node = _one(store, node, _RDF + "rest")
+    while node is not None and node != NamedNode(RDF + "nil"):
+        yield _one(store, node, RDF + "first")
+        node = _one(store, node, RDF + "rest")

@@ -7,20 +7,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pyoxigraph import BlankNode, NamedNode, RdfFormat, Triple, parse
+from pyoxigraph import BlankNode, NamedNode, Triple
 
 from afkb.errors import KnowledgeError
-from afkb.ontology.names import AFN, ONTOLOGY_IRI, RDF_TYPE
-
-FROM_ROW = AFN + "fromRow"
-_OWL = "http://www.w3.org/2002/07/owl#"
-_FORMATS = {
-    ".owl": RdfFormat.RDF_XML,
-    ".rdf": RdfFormat.RDF_XML,
-    ".xml": RdfFormat.RDF_XML,
-    ".ttl": RdfFormat.TURTLE,
-    ".nt": RdfFormat.N_TRIPLES,
-}
+from afkb.ontology.names import AFN, ONTOLOGY_IRI, OWL, RDF_TYPE, property_iri
+from afkb.ontology.rdf_files import RDF_FORMATS, read_triples
 
 
 @dataclass(slots=True)
@@ -40,11 +31,11 @@ class Facts:
 
     def many(self, subject: str, prop: str) -> list[str]:
         """All values, sorted."""
-        return sorted(self.values.get(subject, {}).get(_full(prop), []))
+        return sorted(self.values.get(subject, {}).get(property_iri(prop), []))
 
     def one(self, subject: str, prop: str) -> str | None:
         """The value, or None; `KnowledgeError` where two files state different ones."""
-        found = self.values.get(subject, {}).get(_full(prop), [])
+        found = self.values.get(subject, {}).get(property_iri(prop), [])
         if len(found) > 1:
             values = ", ".join(sorted(found))
             raise self.error(subject, f"{prop} is stated {len(found)} times: {values}")
@@ -87,10 +78,10 @@ class Facts:
     def place(self, subject: str) -> str:
         """File and line where a subject is stated, as far as they can be told."""
         file = self.file_of.get(subject)
-        row = self.values.get(subject, {}).get(FROM_ROW)
+        row = self.many(subject, "fromRow")
         if file is None:
             return row[0] if row else "?"
-        if file.suffix not in _FORMATS:
+        if file.suffix not in RDF_FORMATS:
             return f"{file.parent / row[0]}" if row else str(file)
         line = _line_of(file, subject)
         return f"{file}, line {line}" if line else str(file)
@@ -108,7 +99,7 @@ def read_facts(files: Sequence[Path]) -> Facts:
     facts = Facts()
     plain = _extensions(files)
     for file in files:
-        if file in plain or file.suffix in _FORMATS:
+        if file in plain or file.suffix in RDF_FORMATS:
             _collect(plain.get(file) or _statements(file), file, facts)
     _check_imports(facts)
     return facts
@@ -129,16 +120,7 @@ def _extensions(files: Sequence[Path]) -> dict[Path, list[tuple[str, str, str]]]
 
 
 def _statements(file: Path) -> Iterable[tuple[str, str, str]]:
-    try:
-        triples = list(parse(path=str(file), format=_FORMATS[file.suffix]))
-    except (SyntaxError, ValueError, OSError) as error:
-        line = getattr(error, "lineno", None)
-        where = f", line {line}" if line else ""
-        raise KnowledgeError(
-            f"{file}{where}: not readable as {_FORMATS[file.suffix].name}: {error.args[0]}; "
-            "save it again as RDF/XML or Turtle"
-        ) from error
-    return [_plain(t) for t in triples if not isinstance(t.subject, BlankNode)]
+    return [_plain(t) for t in read_triples(file) if not isinstance(t.subject, BlankNode)]
 
 
 def _plain(triple: Triple) -> tuple[str, str, str]:
@@ -164,7 +146,7 @@ def _collect(statements: Iterable[tuple[str, str, str]], file: Path, facts: Fact
 def _check_imports(facts: Facts) -> None:
     read = set(facts.values) | {ONTOLOGY_IRI}
     for subject, properties in facts.values.items():
-        for imported in properties.get(_OWL + "imports", ()):
+        for imported in properties.get(OWL + "imports", ()):
             if imported not in read and not imported.startswith(ONTOLOGY_IRI):
                 raise KnowledgeError(
                     f"{facts.file_of[subject]}: imports {imported}, which is not among the files "
@@ -182,7 +164,3 @@ def _line_of(file: Path, subject: str) -> int | None:
         return None
     about = [n for n, line in enumerate(lines, start=1) if any(mark in line for mark in marks)]
     return about[0] if about else None
-
-
-def _full(prop: str) -> str:
-    return prop if ":" in prop else AFN + prop

@@ -20,7 +20,7 @@ SUPPLIED_STRENGTH = 0.8
 
 
 @dataclass(slots=True)
-class Afbit:
+class DrawnAfbit:
     """One statement: a category, or a part of it, has an affordance (paper §II.A).
 
     `stated`: its own row of `afbits.csv`, which takes precedence over what rules say. `rules`:
@@ -108,7 +108,7 @@ def draw_afbits(
     rules: Iterable[Rule],
     stated: Iterable[Row] = (),
     verdicts: Iterable[Row] = (),
-) -> list[Afbit]:
+) -> list[DrawnAfbit]:
     """Every afbit that is stated or that a rule makes, sorted, admitted or not.
 
     `kinds`: feature to structural, material or grasp. Raises `KnowledgeError`, with the place,
@@ -116,12 +116,12 @@ def draw_afbits(
     """
     known = {subject.name: subject for subject in subjects}
     rules = list(rules)
-    drawn: dict[Key, Afbit] = {}
+    drawn: dict[Key, DrawnAfbit] = {}
     for row in stated:
         key = _key(row, known, kinds)
         if key in drawn:
             raise row.error(f"{'.'.join(filter(None, key))} is stated a second time; keep one")
-        drawn[key] = Afbit(key, known[key[0]], kinds[key[2]], stated=row)
+        drawn[key] = DrawnAfbit(key, known[key[0]], kinds[key[2]], stated=row)
     for rule in rules:
         if rule.row["feature"] not in kinds:
             raise rule.row.error(f"feature {rule.row['feature']} is not in the table of features")
@@ -132,7 +132,7 @@ def draw_afbits(
             raise row.error(f"verdict {row['verdict']!r} is none of: {', '.join(VERDICTS)}")
         key = _key(row, known, kinds)
         if row["verdict"] == "missing" and key not in drawn:
-            drawn[key] = Afbit(key, known[key[0]], kinds[key[2]], stated=_supplied(row, rules))
+            drawn[key] = DrawnAfbit(key, known[key[0]], kinds[key[2]], stated=_supplied(row, rules))
         if key in drawn:
             drawn[key].verdict = row
     return [drawn[key] for key in sorted(drawn)]
@@ -151,12 +151,14 @@ def _supplied(row: Row, rules: Iterable[Rule]) -> Row:
     return replace(row, cells=row.cells | said)
 
 
-def _apply(rule: Rule, subject: Subject, kinds: Mapping[str, str], drawn: dict[Key, Afbit]) -> None:
+def _apply(
+    rule: Rule, subject: Subject, kinds: Mapping[str, str], drawn: dict[Key, DrawnAfbit]
+) -> None:
     evidence = rule.evidence(subject)
     if evidence is None:
         return
     key = (subject.name, rule.row.get("part"), rule.row["feature"])
-    afbit = drawn.setdefault(key, Afbit(key, subject, kinds[key[2]]))
+    afbit = drawn.setdefault(key, DrawnAfbit(key, subject, kinds[key[2]]))
     afbit.rules.append(rule)
     afbit.evidence |= evidence
 
@@ -169,7 +171,16 @@ def _key(row: Row, known: Mapping[str, Subject], kinds: Mapping[str, str]) -> Ke
     return row["category"], row.get("part"), row["feature"]
 
 
-def summary(afbits: Iterable[Afbit]) -> dict[str, dict[str, int]]:
+def whole_afbits(rows: Iterable[Row], parts: Iterable[Row], kinds: Mapping[str, str]) -> list[Row]:
+    """The rows of structural and material afbits that are met as the thing's own.
+
+    `parts`: rows of parts, some of which stand for the whole. `kinds`: feature to its kind.
+    """
+    wholes = {"", *(part["name"] for part in parts if part.get("whole") == "yes")}
+    return [r for r in rows if r.get("part") in wholes and kinds[r["feature"]] != "grasp"]
+
+
+def summary(afbits: Iterable[DrawnAfbit]) -> dict[str, dict[str, int]]:
     """Per kind of feature: how many, on two sources, reviewed, held back and why."""
     counts: dict[str, dict[str, int]] = defaultdict(lambda: defaultdict(int))
     for afbit in afbits:

@@ -2,66 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rdflib import Graph, URIRef
 
-from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
-from afkb.ontology.afbits import Afbit, draw_afbits
-from afkb.ontology.categories import completed
+from afkb.ontology.afbits import DrawnAfbit, whole_afbits
 from afkb.ontology.counted import counted_rows
 from afkb.ontology.counted_pairs import counted_pairs
 from afkb.ontology.entity_classes import add_entity_classes
-from afkb.ontology.entity_definitions import Definition, add_definitions
+from afkb.ontology.entity_definitions import EntityDefinition, add_definitions
 from afkb.ontology.header import PREFIXES, add_external_terms, add_header
-from afkb.ontology.heights import with_undersides
 from afkb.ontology.links import check_links, link_files
 from afkb.ontology.modules import add_modules, write_modules
 from afkb.ontology.names import AFN
 from afkb.ontology.rdfxml import to_rdfxml
 from afkb.ontology.rule_examples import add_rule_examples
-from afkb.ontology.rules import read_rules
 from afkb.ontology.schema import AFBITS, CO_OCCURRENCES, TABLES
 from afkb.ontology.statements import FROM_ROW, add_disjointness, add_individual, add_term
-from afkb.ontology.subjects import read_subjects
+from afkb.ontology.table_folder import Tables
 from afkb.ontology.tables import by_name, read_table
 from afkb.ontology.writing import one_writer, put_whole
 
 if TYPE_CHECKING:
     from afkb.figures import Figures
-
-_UNLIKE_OTHERS = (
-    "vocabulary", "afbits", "evidence", "review", "entity_definitions", "links", "units",
-)  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class Tables:
-    """The rows of every table, by the table's name, and what was counted in homes beside them."""
-
-    rows: dict[str, list[Row]]
-    figures: Figures | None = None
-
-    @classmethod
-    def read(cls, folder: Path) -> Tables:
-        """Read a folder of tables; `KnowledgeError` with file and line."""
-        names = (*_UNLIKE_OTHERS, *(t.name for t in TABLES))
-        rows = {name: read_table(folder, name) for name in names}
-        figures = _figures(folder.parent / "counts")
-        categories = with_undersides(map(completed, rows["categories"]), figures)
-        return cls(rows | {"categories": categories}, figures)
-
-    def afbits(self) -> list[Afbit]:
-        """Every afbit that the tables state or make, those that are held back among them."""
-        subjects = read_subjects(
-            self.rows["categories"], self.rows["category_groups"], self.rows["evidence"]
-        )
-        kinds = {name: row["kind"] for name, row in by_name(self.rows["features"]).items()}
-        rules = read_rules(self.rows["rules"])
-        return draw_afbits(subjects, kinds, rules, self.rows["afbits"], self.rows["review"])
 
 
 def build_ontology(folder: Path) -> Graph:
@@ -80,16 +45,11 @@ def build_ontology(folder: Path) -> Graph:
     rows = [afbit.row() for afbit in admitted]
     for row in rows:
         add_individual(graph, AFBITS, row)
-    as_wholes = {"", *(r["name"] for r in tables.rows["parts"] if r.get("whole") == "yes")}
-    whole = [
-        row
-        for row, afbit in zip(rows, admitted, strict=True)
-        if afbit.key[1] in as_wholes and afbit.kind != "grasp"
-    ]
     if tables.figures is not None:
         _add_counted(graph, tables, admitted, tables.figures)
+    whole = whole_afbits(rows, tables.rows["parts"], tables.kinds)
     add_entity_classes(graph, tables.rows["categories"], tables.rows["category_groups"], whole)
-    add_definitions(graph, map(Definition.read, tables.rows["entity_definitions"]))
+    add_definitions(graph, map(EntityDefinition.read, tables.rows["entity_definitions"]))
     add_rule_examples(graph)
     add_modules(graph)
     check_links(graph, tables.rows["links"], tables.rows["units"])
@@ -97,16 +57,7 @@ def build_ontology(folder: Path) -> Graph:
     return graph
 
 
-def _figures(counts: Path) -> Figures | None:
-    """What was counted in homes; None where there is no folder of counts."""
-    if not counts.is_dir():
-        return None
-    from afkb.figures import Figures
-
-    return Figures.load(counts)
-
-
-def _add_counted(graph: Graph, tables: Tables, afbits: list[Afbit], figures: Figures) -> None:
+def _add_counted(graph: Graph, tables: Tables, afbits: list[DrawnAfbit], figures: Figures) -> None:
     """Add what was counted in homes."""
     for table, row in counted_rows(figures):
         add_individual(graph, table, row)

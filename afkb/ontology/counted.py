@@ -9,8 +9,7 @@ from afkb.csv_rows import Row
 from afkb.ontology.schema import Table
 
 if TYPE_CHECKING:
-    from afkb.figures import Figures
-    from afkb.figures.figures import Figure, InRoom
+    from afkb.figures import Figure, Figures, InRoom
 
 IN_ROOM = Table("figures", "ObjectInRoom", ("object", "room"), suffix="InRoom")
 TOGETHER = Table("figures", "ObjectWithObject", ("object", "given"), suffix="Together")

@@ -6,12 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from afkb.csv_rows import Row
-from afkb.ontology.afbits import Afbit
+from afkb.ontology.afbits import DrawnAfbit
 from afkb.ontology.subjects import measures_of
 
 if TYPE_CHECKING:
-    from afkb.figures import Figures
-    from afkb.figures.figures import Together
+    from afkb.figures import Figures, Together
 
 LEAST_P, LEAST_LIFT, LEAST_TRIALS = 0.5, 2.0, 20
 """A pair is listed where it is likelier than not, twice as likely as anywhere, in enough rooms."""
@@ -23,7 +22,7 @@ _GAP_M = 0.2
 
 
 def counted_pairs(
-    figures: Figures, categories: Mapping[str, Row], afbits: Iterable[Afbit], taken: set[str]
+    figures: Figures, categories: Mapping[str, Row], afbits: Iterable[DrawnAfbit], taken: set[str]
 ) -> Iterator[Row]:
     """Rows of co-occurrences (paper §II.D.iii), by name; `taken`: names that tables have already.
 

@@ -22,7 +22,7 @@ TABLE = "entity_definitions"
 
 
 @dataclass(frozen=True, slots=True)
-class Definition:
+class EntityDefinition:
     """What an entity needs to be of a class.
 
     `features`: it affords all of them. `scale`: of that scale; empty for any. `z_m`: the range of
@@ -35,7 +35,7 @@ class Definition:
     z_m: tuple[float, float]
 
     @classmethod
-    def read(cls, row: Row) -> Definition:
+    def read(cls, row: Row) -> EntityDefinition:
         """The definition of a row; `KnowledgeError`, with its place, where it says nothing."""
         features = tuple(row.several("features"))
         if not features:
@@ -85,7 +85,7 @@ def typical_thing(row: Row, features: Iterable[str]) -> Typical:
 
 
 def unsound(
-    definitions: Iterable[Definition], things: Iterable[Typical], broader: Mapping[str, str]
+    definitions: Iterable[EntityDefinition], things: Iterable[Typical], broader: Mapping[str, str]
 ) -> Iterator[str]:
     """What is wrong with definitions of categories, a line each: they must hold both ways.
 
@@ -113,7 +113,7 @@ def _upwards(name: str, broader: Mapping[str, str]) -> set[str]:
     return found
 
 
-def add_definitions(graph: Graph, definitions: Iterable[Definition]) -> None:
+def add_definitions(graph: Graph, definitions: Iterable[EntityDefinition]) -> None:
     """State each definition as `owl:equivalentClass`: an intersection of restrictions.
 
     A name that is no category's gets a class of its own. What affords a feature affords the
@@ -153,7 +153,7 @@ def _place(row: Row) -> Literal:
     return Literal(row.place, datatype=XSD.string)
 
 
-def _conjuncts(graph: Graph, definition: Definition) -> list[Node]:
+def _conjuncts(graph: Graph, definition: EntityDefinition) -> list[Node]:
     name = definition.name
     conjuncts: list[Node] = [URIRef(AFN + "Entity")]
     conjuncts += [_has_value(graph, name, "affords", feature) for feature in definition.features]

@@ -12,8 +12,12 @@ VERSION = "0.2.0"
 PRIOR_VERSION = "0.1.0"
 SKOS = "http://www.w3.org/2004/02/skos/core#"
 DCTERMS = "http://purl.org/dc/terms/"
-RDF_TYPE = "http://www.w3.org/1999/02/22-rdf-syntax-ns#type"
-RDFS_LABEL = "http://www.w3.org/2000/01/rdf-schema#label"
+RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
+RDFS = "http://www.w3.org/2000/01/rdf-schema#"
+OWL = "http://www.w3.org/2002/07/owl#"
+XSD = "http://www.w3.org/2001/XMLSchema#"
+RDF_TYPE = RDF + "type"
+RDFS_LABEL = RDFS + "label"
 
 COUNTED = "taken from data"
 """The status of figures that were counted."""
@@ -38,6 +42,15 @@ def fragment(iri: str) -> str:
     'Mug'
     """
     return iri.rsplit("#", 1)[-1].rsplit("/", 1)[-1]
+
+
+def property_iri(name: str) -> str:
+    """The IRI of a property of the ontology; an IRI stays as it is.
+
+    >>> property_iri("strength")
+    'https://w3id.org/afkb/afnet#strength'
+    """
+    return name if ":" in name else AFN + name
 
 
 def slug(name: str) -> str:

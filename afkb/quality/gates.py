@@ -8,11 +8,11 @@ from enum import StrEnum
 from pathlib import Path
 
 from afkb.errors import KnowledgeError
+from afkb.ontology.rdf_files import RDF_FORMATS
 from afkb.quality.checked import Checked
 from afkb.quality.findings import Finding, Gate, findings_of_error
 from afkb.quality.pitfalls import PITFALLS, check_pitfalls
 from afkb.quality.questions import check_questions, read_questions, store_of
-from afkb.quality.reading import FORMATS
 from afkb.quality.reasoner import NO_JAVA, java
 from afkb.quality.reasoning import check_reasoning
 from afkb.quality.shape_check import check_shapes, read_shapes
@@ -84,7 +84,7 @@ def _nothing(_: object) -> list[Finding]:
 def _aligned(task: Task, reasoner: Reasoner) -> Iterator[Gate]:
     """The reasoner, and the questions that need them, over the ontology with all alignments."""
     folder = task.folder / "alignments"
-    alignments = sorted(path for path in folder.glob("*") if path.suffix in FORMATS)
+    alignments = sorted(path for path in folder.glob("*") if path.suffix in RDF_FORMATS)
     if not alignments:
         return
     try:

@@ -8,9 +8,9 @@ from pathlib import Path
 from rdflib import BNode, URIRef
 from rdflib.namespace import DCTERMS, OWL, RDF, RDFS
 
+from afkb.ontology.rdf_files import RDF_FORMATS
 from afkb.quality.checked import Checked
 from afkb.quality.pitfall import Found, own_of
-from afkb.quality.reading import FORMATS
 
 _METADATA = {
     OWL.versionIRI: "owl:versionIRI",
@@ -34,7 +34,7 @@ def no_header(checked: Checked) -> Iterator[Found]:
 
 
 def _is_rdf(file: Path) -> bool:
-    return file.suffix in FORMATS
+    return file.suffix in RDF_FORMATS
 
 
 def nameless(checked: Checked) -> Iterator[Found]:

@@ -5,23 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from pyoxigraph import BlankNode, NamedNode, RdfFormat, Triple, parse
+from pyoxigraph import BlankNode, NamedNode, Triple
 from pyoxigraph import Literal as OxLiteral
 from rdflib import BNode, Graph, Literal, URIRef
 from rdflib.namespace import XSD
 from rdflib.term import Node
 
 from afkb.errors import KnowledgeError
-
-FORMATS = {
-    ".owl": RdfFormat.RDF_XML,
-    ".rdf": RdfFormat.RDF_XML,
-    ".xml": RdfFormat.RDF_XML,
-    ".ttl": RdfFormat.TURTLE,
-    ".turtle": RdfFormat.TURTLE,
-    ".nt": RdfFormat.N_TRIPLES,
-}
-"""RDF by the file's suffix; anything else is an extension in YAML or tables."""
+from afkb.ontology.rdf_files import RDF_FORMATS, read_triples
 
 
 def read_graphs(files: Sequence[Path]) -> dict[Path, Graph]:
@@ -30,7 +21,7 @@ def read_graphs(files: Sequence[Path]) -> dict[Path, Graph]:
     `KnowledgeError`, with file and line, where one can't be read.
     """
     stacked: dict[Path, Graph] = {}
-    if any(path.suffix not in FORMATS for path in files):
+    if any(path.suffix not in RDF_FORMATS for path in files):
         from afkb.extensions import read_stack
 
         stacked = read_stack(files)
@@ -47,14 +38,8 @@ def read_graph(path: Path) -> Graph:
     # One scope a file: `_:1` of two files are two blank nodes. IRIs recur, so they are kept, too.
     scope: dict[str, Node] = {}
     graph = Graph()
-    try:
-        for triple in parse(path=str(path), format=FORMATS[path.suffix]):
-            graph.add(_as_rdflib(triple, scope))
-    except (SyntaxError, ValueError, OSError) as error:
-        line = getattr(error, "lineno", None)
-        where = f"{path}, line {line}" if line else str(path)
-        form = FORMATS[path.suffix].name
-        raise KnowledgeError(f"{where}: not readable as {form}: {error.args[0]}") from error
+    for triple in read_triples(path):
+        graph.add(_as_rdflib(triple, scope))
     return graph
 
 

@@ -12,7 +12,6 @@ from afkb.ontology.names import AFN, DCTERMS, RDF_TYPE
 if TYPE_CHECKING:
     from afkb.quality.counts import KindCount
 
-_OWL = "http://www.w3.org/2002/07/owl#"
 _TERMS = (RDF_TYPE, AFN + "ofFeature")
 _VALUES = tuple(AFN + name for name in ("status", "independentSources", "reviewed"))
 _KINDS = {

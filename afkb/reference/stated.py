@@ -7,14 +7,22 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from afkb.knowledge.facts import Facts, read_facts
-from afkb.ontology.names import AFN, DCTERMS, ONTOLOGY_IRI, RDF_TYPE, RDFS_LABEL, SKOS, fragment
+from afkb.ontology.names import (
+    AFN,
+    DCTERMS,
+    ONTOLOGY_IRI,
+    OWL,
+    RDF_TYPE,
+    RDFS,
+    RDFS_LABEL,
+    SKOS,
+    fragment,
+)
 
-_OWL = "http://www.w3.org/2002/07/owl#"
-_RDFS = "http://www.w3.org/2000/01/rdf-schema#"
 _LINKS = {
     *(SKOS + name for name in ("exactMatch", "closeMatch", "broadMatch", "narrowMatch")),
-    _OWL + "sameAs",
-    _RDFS + "seeAlso",
+    OWL + "sameAs",
+    RDFS + "seeAlso",
 }
 _PROPERTIES = ("ObjectProperty", "DatatypeProperty")
 
@@ -55,8 +63,8 @@ def header_of(facts: Facts, extensions: Iterable[str]) -> Header:
     return Header(
         title=said(DCTERMS + "title") or "Affordance ontology",
         description=said(DCTERMS + "description"),
-        version=said(_OWL + "versionInfo"),
-        version_iri=said(_OWL + "versionIRI"),
+        version=said(OWL + "versionInfo"),
+        version_iri=said(OWL + "versionIRI"),
         licence=said(DCTERMS + "license"),
         extensions=tuple(extensions),
     )
@@ -70,9 +78,9 @@ def terms_of(facts: Facts, class_name: str, said: Iterable[str] = ()) -> list[Te
 def vocabulary_of(facts: Facts) -> list[Term]:
     """The classes and properties of the ontology's own words, without the classes of entities."""
     entities = {v for p in facts.values.values() for v in p.get(AFN + "entityClass", ())}
-    wanted = {_OWL + name for name in ("Class", *_PROPERTIES)}
+    wanted = {OWL + name for name in ("Class", *_PROPERTIES)}
     return by_label(
-        _term(facts, iri, (_RDFS + "domain", _RDFS + "range", _RDFS + "subClassOf"))
+        _term(facts, iri, (RDFS + "domain", RDFS + "range", RDFS + "subClassOf"))
         for iri, said in facts.values.items()
         if wanted & set(said.get(RDF_TYPE, ())) and iri.startswith(AFN) and iri not in entities
     )

@@ -19,16 +19,13 @@ from afkb.errors import KnowledgeError, QueryError
 from afkb.knowledge.cache import cached_file, content_key
 from afkb.knowledge.closure import classify, close_ontology, closed_ontology
 from afkb.knowledge.definitions import Definitions
+from afkb.ontology.rdf_files import RDF_FORMATS, unreadable
 from afkb.store.results import QueryResult
 from afkb.store.sparql_text import refuse_writing, syntax_error
 from afkb.store.stored import StoredMap
 from afkb.store.vocabulary import PREFIXES, escaped
 
 ONTOLOGY_GRAPH = "urn:afkb:ontology"
-_OWL_FORMATS = dict.fromkeys((".owl", ".rdf", ".xml"), RdfFormat.RDF_XML) | {
-    ".ttl": RdfFormat.TURTLE,
-    ".nt": RdfFormat.N_TRIPLES,
-}
 
 
 def query(maps: Sequence[StoredMap], sparql: str, ontology: Iterable[Path] = ()) -> QueryResult:
@@ -115,7 +112,7 @@ def _closed(files: Sequence[Path]) -> bytes:
 
 def load_ontologies(store: Store, files: Sequence[Path]) -> None:
     """Add the ontology and its extensions; `KnowledgeError` where one can't be read."""
-    plain = [path for path in files if path.suffix not in _OWL_FORMATS]
+    plain = [path for path in files if path.suffix not in RDF_FORMATS]
     if plain:
         from afkb.extensions import read_stack
 
@@ -130,11 +127,11 @@ def load_ontologies(store: Store, files: Sequence[Path]) -> None:
 
 def load_ontology(store: Store, path: Path) -> None:
     """Add an OWL file to the store; `KnowledgeError` where it can't be read."""
-    form = _OWL_FORMATS[path.suffix]
+    form = RDF_FORMATS[path.suffix]
     try:
         store.bulk_load(path=str(path), format=form, to_graph=NamedNode(ONTOLOGY_GRAPH))
     except (SyntaxError, ValueError, OSError) as error:
-        raise KnowledgeError(f"{path}: not readable as {form.name}: {error}") from error
+        raise unreadable(path, error) from error
 
 
 def _run(

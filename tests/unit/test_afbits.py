@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 
 from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
-from afkb.ontology.afbits import Afbit, draw_afbits, summary
+from afkb.ontology.afbits import DrawnAfbit, draw_afbits, summary
 from afkb.ontology.notation import read_afbit, write_afbit
 from afkb.ontology.rules import Rule
 from ontology_tables import row, rule, subject
@@ -13,7 +13,7 @@ KINDS = {"ContainAbility": "structural", "BreakAbility": "material", "RingGrasp"
 NAMES = st.from_regex(r"[A-Z][A-Za-z0-9]{0,12}", fullmatch=True)
 
 
-def draw(tokens: str = "", **tables: list[Row]) -> list[Afbit]:
+def draw(tokens: str = "", **tables: list[Row]) -> list[DrawnAfbit]:
     rules = [Rule.read(r) for r in tables.get("rules", [rule()])]
     cup = subject(tokens)
     return draw_afbits([cup], KINDS, rules, tables.get("stated", []), tables.get("review", []))
@@ -110,5 +110,5 @@ def test_what_is_no_afbit_is_refused(text: str) -> None:
         read_afbit(text)
 
 
-def _feature(afbit: Afbit) -> str:
+def _feature(afbit: DrawnAfbit) -> str:
     return afbit.key[2]

@@ -11,10 +11,9 @@ from rdflib.namespace import OWL
 from afkb.csv_rows import Row
 from afkb.errors import KnowledgeError
 from afkb.knowledge import bundled_ontology
-from afkb.ontology.build import Tables
 from afkb.ontology.entity_classes import STRONG
 from afkb.ontology.entity_definitions import (
-    Definition,
+    EntityDefinition,
     Typical,
     add_definitions,
     typical_thing,
@@ -22,6 +21,7 @@ from afkb.ontology.entity_definitions import (
 )
 from afkb.ontology.names import AFN, SOMETHING_ELSE
 from afkb.ontology.subjects import kinds_of
+from afkb.ontology.table_folder import Tables
 
 A = Namespace(AFN)
 XML_SCHEMA = Namespace("http://www.w3.org/2001/XMLSchema#")
@@ -50,8 +50,8 @@ def things() -> list[Typical]:
     ]
 
 
-def definitions() -> list[Definition]:
-    return [Definition.read(row) for row in tables().rows["entity_definitions"]]
+def definitions() -> list[EntityDefinition]:
+    return [EntityDefinition.read(row) for row in tables().rows["entity_definitions"]]
 
 
 def test_a_category_that_fits_a_definition_is_of_its_category() -> None:
@@ -81,9 +81,9 @@ def test_a_definition_tells_what_it_is_meant_to_tell() -> None:
     assert {"Pen", "Pencil"} <= met["WritingTool"]
 
 
-def definition(**cells: str) -> Definition:
+def definition(**cells: str) -> EntityDefinition:
     row = {"name": "Seat", "label": "seat", "status": "proposed", "source": "test"} | cells
-    return Definition.read(Row("entity_definitions.csv", 2, row))
+    return EntityDefinition.read(Row("entity_definitions.csv", 2, row))
 
 
 def thing(category: str, *features: str, scale: str = "Medium", z: float | None = 0.45) -> Typical:
