@@ -9,8 +9,7 @@ import numpy as np
 
 from afkb.errors import EvidenceError
 from afkb.inference.bands import Array
-from afkb.knowledge import AfNet, CoOccurrence
-from afkb.ontology.names import COUNTED
+from afkb.knowledge import COUNTED, AfNet, CoOccurrence
 
 
 @dataclass(frozen=True, slots=True, eq=False)

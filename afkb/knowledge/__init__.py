@@ -14,10 +14,11 @@ from afkb.knowledge.model import (
     Trapezoid,
 )
 from afkb.ontology.bundled import bundled_ontology
-from afkb.ontology.names import AFN, SOMETHING_ELSE, UNKNOWN_ROOM
+from afkb.ontology.names import AFN, COUNTED, SOMETHING_ELSE, UNKNOWN_ROOM
 
 __all__ = [
     "AFN",
+    "COUNTED",
     "SOMETHING_ELSE",
     "UNKNOWN_ROOM",
     "AfNet",
