@@ -38,10 +38,12 @@ class Score:
 
     @property
     def precision(self) -> float:
+        """Share of what was judged that is right."""
         return self.right / max(self.right + self.wrong, 1)
 
     @property
     def recall(self) -> float:
+        """Share of what holds that was made."""
         return self.right / max(self.right + self.missed, 1)
 
 
