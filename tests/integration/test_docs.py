@@ -119,7 +119,8 @@ def test_what_is_named_without_being_run_is_there(block: Block, recordings: Path
             subprocess.run(["make", "-n", *words], cwd=ROOT, check=True, capture_output=True)
         elif command == "sudo":
             packages = words[words.index("install") + 1 :]
-            known = (ROOT / "scripts" / "set-up.sh").read_text() + " make git python3 python3-venv"
+            scripts = [ROOT / "scripts" / name for name in ("set-up.sh", "java.sh")]
+            known = " ".join(s.read_text() for s in scripts) + " make git python3 python3-venv"
             assert all(re.search(rf"\b{re.escape(p)}\b", known) for p in packages), line
         elif command == "pip":
             paths = [w for w in words if "/" in w or w.startswith(".")]
