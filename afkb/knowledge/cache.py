@@ -31,7 +31,7 @@ copyreg.pickle(MappingProxyType, lambda mapping: (_frozen, (dict(mapping),)))
 
 def cache_folder() -> Path:
     """Where entries are kept: `AFKB_CACHE`, else the user's cache folder."""
-    if "AFKB_CACHE" in os.environ:
+    if os.environ.get("AFKB_CACHE"):
         return Path(os.environ["AFKB_CACHE"])
     from platformdirs import user_cache_path
 
@@ -42,6 +42,7 @@ def content_key(files: Sequence[Path]) -> str:
     """A name for what the files say and how this version reads it; bytes alone count."""
     digest = hashlib.sha256(_reader_fingerprint())
     for file in files:
+        digest.update(file.name.encode() + b"\0")
         for part in sorted(file.rglob("*.csv")) if file.is_dir() else [file]:
             digest.update(part.name.encode() + b"\0" + part.read_bytes() + b"\0")
     return digest.hexdigest()[:32]
@@ -68,7 +69,7 @@ def _entry(path: Path) -> tuple[Any] | None:
     try:
         with _no_collection():
             return (pickle.loads(_own_bytes(path)),)
-    except (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, IndexError):
+    except Exception:  # A damaged pickle may raise anything; it is made afresh.
         return None
 
 
@@ -123,7 +124,7 @@ def _reader_fingerprint() -> bytes:
     """The code that reads, so that a changed reader never meets an old entry."""
     package = Path(__file__).parent.parent
     rooms = ("knowledge", "extensions", "ontology", "figures")
-    sources = [source for room in rooms for source in (package / room).glob("*.py")]
+    sources = [*package.glob("*.py"), *(s for room in rooms for s in (package / room).glob("*.py"))]
     digest = hashlib.sha256(f"{sys.version_info[:2]}".encode())
     for source in sorted(sources):
         digest.update(source.read_bytes())
