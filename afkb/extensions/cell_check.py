@@ -9,6 +9,7 @@ from afkb.extensions.sheet import Entry, Sheet
 from afkb.ontology.names import KINDS, RELATIONS, STATUSES
 
 _NAME = re.compile(r"[A-Z][A-Za-z0-9_]*")
+_MEASURE = re.compile(r"[a-z][A-Za-z0-9_]*")
 _WORDS = {
     "status": STATUSES,
     "grounding_status": STATUSES,
@@ -43,10 +44,26 @@ def check_cells(sheet: Sheet, problems: Problems) -> None:
                 f"the name {name!r} is not of that form; write {_camel(name)!r}: letters and "
                 "digits, a capital first",
             )
+        _check_entity(entry, name, problems)
+        measure = entry.row.get("parameter_name")
+        if measure and not _MEASURE.fullmatch(measure):
+            problems.add(
+                entry.row.place,
+                f"the measure {measure!r} is not of that form; write it with its unit, as in "
+                "height_m",
+            )
         for column in _NEEDED.get(entry.table.name, ()):
             for needed in _ends(column):
                 _check_filled(entry, needed, problems)
         _check_words(entry, problems)
+
+
+def _check_entity(entry: Entry, name: str, problems: Problems) -> None:
+    if entry.table.name in ("categories", "category_groups") and name.endswith("Entity"):
+        problems.add(
+            entry.row.place,
+            f"the name {name!r} ends as those of classes do; leave `Entity` out of it",
+        )
 
 
 def _ends(column: str) -> tuple[str, ...]:

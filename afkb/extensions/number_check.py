@@ -13,6 +13,11 @@ _POSITIVE = ("expectedNumber", "expectedCount", "dispersion")
 _NOT_NEGATIVE = ("distanceMean", "distanceSd", "sizeXTypical", "sizeYTypical")
 _NUMBERS = ("value", "z1", "n1", "n2", "z2", "evidenceBottomMin")
 _RANGES = ("length", "width", "height", "mass", "top", "extent")
+_GREATEST = {
+    "length": 30.0, "width": 15.0, "height": 6.0, "top": 8.0, "mass": 20000.0,
+    "distanceMean": 30.0, "distanceSd": 30.0, "sizeXTypical": 30.0, "sizeYTypical": 30.0,
+}  # fmt: skip
+"""What nothing in a home exceeds, m or kg: more was written in another unit."""
 
 
 def check_numbers(statements: Statements, problems: Problems) -> None:
@@ -40,6 +45,8 @@ def _check_values(subject: str, statements: Statements, problems: Problems) -> N
                 note(prop, f"{value:g}", "is not above 0; write 0.01 for what is very rare")
             elif prop in _NOT_NEGATIVE and value < 0:
                 note(prop, f"{value:g}", "is below 0; write a length in metres")
+            elif value > _GREATEST.get(prop, value):
+                note(prop, f"{value:g}", _too_much(prop))
 
 
 def _check_ranges(subject: str, is_thing: bool, statements: Statements, problems: Problems) -> None:
@@ -59,6 +66,14 @@ def _check_ranges(subject: str, is_thing: bool, statements: Statements, problems
                 place,
                 f"{fragment(subject)}: {what} {low:g} is not above 0; write metres or kilograms",
             )
+        elif (most := high if high is not None else low) and most > _GREATEST.get(what, most):
+            problems.add(place, f"{fragment(subject)}: {what} {most:g} {_too_much(what)}")
+
+
+def _too_much(what: str) -> str:
+    if what == "mass":
+        return f"is above {_GREATEST[what]:g} kg; write kilograms, not grams"
+    return f"is above {_GREATEST[what]:g} m; write metres, not centimetres"
 
 
 def _check_trapezoid(subject: str, statements: Statements, problems: Problems) -> None:

@@ -74,6 +74,17 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return "mend the name, or define it; `afkb ontology show` lists those that there are"
 
 
+def nearest_of(name: str, known: Iterable[str]) -> str:
+    """As `nearest`, for keys and columns: where none is near, all of them are listed.
+
+    >>> nearest_of("colour", ["shape", "scale"])
+    'known: scale, shape'
+    """
+    names = sorted(known)
+    mend = nearest(name, names)
+    return mend if mend.startswith("did") else f"known: {', '.join(names)}"
+
+
 def _parted(place: str) -> tuple[str, int]:
     file, _, line = place.rpartition(", line ")
     return (file, int(line)) if file and line.isdigit() else (place, 0)

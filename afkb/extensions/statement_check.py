@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from afkb.extensions.change_check import check_changes
 from afkb.extensions.number_check import check_numbers
 from afkb.extensions.problems import Problems, nearest
 from afkb.extensions.statements import Statements, terms_of
@@ -58,6 +59,7 @@ def check_statements(statements: Statements, earlier: Terms, problems: Problems)
     known.scales += of_file.scales
     twice = _check_names(own, earlier, statements, problems)
     _check_keys(statements, known, problems)
+    check_changes(statements, earlier, problems)
     for class_name, needed in _NEEDED.items():
         for subject in statements.of_type(class_name):
             _check_needed(subject, needed, statements, problems)
@@ -121,11 +123,23 @@ def _check_references(
     for prop, words, name, iri in _references(subject, statements, known):
         term = known.get(name, *words)
         if name not in twice and (term is None or term.iri != iri):
-            mend = nearest(name, known.names(*words))
             problems.add(
-                statements.place(subject, prop),
-                f"{words[0]} {name} is not in the ontology; {mend}",
+                statements.place(subject, prop), _unknown(name, words, term, statements, known)
             )
+
+
+def _unknown(
+    name: str, words: tuple[str, ...], term: Term | None, statements: Statements, known: Terms
+) -> str:
+    """What is wrong with a name that no term of those kinds has, and the mend."""
+    if term is not None:
+        return f"{words[0]} {name} is not in that namespace; write <{term.iri}>"
+    mend = nearest(name, known.names(*words))
+    other = next((t.word for t in known.all() if t.name == name), "")
+    if other:
+        mend = mend if f"did you mean {name}" in mend else f"name a {words[0]}"
+        return f"{name} is a {other}, no {words[0]}; {mend}"
+    return f"{words[0]} {name} is not in the ontology; {mend}"
 
 
 def _references(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from afkb.csv_rows import Row, read_header
 from afkb.errors import KnowledgeError
-from afkb.extensions.problems import Problems, nearest
+from afkb.extensions.problems import Problems, nearest_of
 from afkb.extensions.sheet import ALL_TABLES, NAMESPACE, Entry, Sheet
 from afkb.ontology.names import slug
 from afkb.ontology.tables import read_file
@@ -62,11 +62,16 @@ def _entries(
         raise KnowledgeError(f"{label}: empty; start it with the columns of one of the tables")
     name = table or _table_of(file, header, headers, label)
     allowed = {*headers[name], *_MORE_COLUMNS.get(name, ())}
-    for column in header:
+    if len(header) == 1 and (mark := next((m for m in ";\t" if m in header[0]), "")):
+        said = "a tab" if mark == "\t" else repr(mark)
+        raise KnowledgeError(f"{label}, line 1: columns are parted by {said}; part them by commas")
+    for number, column in enumerate(header):
         if column not in allowed:
             problems.add(
-                f"{label}, line 1", f"unknown column {column!r}; {nearest(column, allowed)}"
+                f"{label}, line 1", f"unknown column {column!r}; {nearest_of(column, allowed)}"
             )
+        elif column in header[:number]:
+            problems.add(f"{label}, line 1", f"column {column} is there twice; take one out")
     for row in rows:
         cells = {column: cell.strip() for column, cell in row.cells.items() if cell.strip()}
         if cells:

@@ -104,7 +104,7 @@ class EvidenceClass(Entry):
     top_m: OpenPair | None = None
     dispersion: float | None = None
     counts: dict[Word, float] = {}
-    elsewhere: float | None = None
+    elsewhere: Annotated[float, Field(gt=0)] | None = None
 
 
 class Room(Entry):

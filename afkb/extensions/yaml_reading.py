@@ -18,6 +18,13 @@ from afkb.errors import KnowledgeError
 from afkb.extensions.problems import Problems
 
 Path_ = tuple[str | int, ...]
+_PLAIN_TAGS = frozenset(
+    f"tag:yaml.org,2002:{name}"
+    for name in ("str", "int", "float", "bool", "null", "map", "seq", "timestamp", "value", "merge")
+)
+"""Tags that YAML gives by itself; any other was written."""
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff]")
+"""What no RDF/XML may hold."""
 _WHOLE = re.compile(r"[-+]?[0-9]+")
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _WORDS: dict[str, Any] = {"": None, "~": None, "null": None, "true": True, "false": False}
@@ -116,6 +123,9 @@ class _Reader:
             self._add(line, "an alias (`*name`) is not understood here; write it out")
             return None
         self._seen.add(id(node))
+        if node.tag not in _PLAIN_TAGS:
+            line = node.start_mark.line + 1
+            self._add(line, f"a tag ({node.tag}) is not understood here; leave it out")
         if isinstance(node, MappingNode):
             return self.mapping(node, path)
         if isinstance(node, SequenceNode):
@@ -123,6 +133,8 @@ class _Reader:
                 self._document.lines[(*path, number)] = item.start_mark.line + 1
             return [self._value(item, (*path, n)) for n, item in enumerate(node.value)]
         assert isinstance(node, ScalarNode)
+        if _CONTROL.search(node.value):
+            self._add(node.start_mark.line + 1, "a control character in the text; take it out")
         return _scalar(node)
 
     def _add(self, line: int, problem: str) -> None:

@@ -22,6 +22,7 @@ from afkb.extensions.yaml_model import (
 )
 from afkb.extensions.yaml_reading import Document, Path_, read_yaml
 from afkb.extensions.yaml_validation import validated
+from afkb.ontology.names import ONTOLOGY_IRI
 from afkb.ontology.notation import read_afbit
 
 _TABLE_OF = {"groups": "category_groups"}
@@ -54,6 +55,11 @@ def yaml_sheet(file: Path, problems: Problems) -> Sheet:
         for name, entry in extension.evidence_classes.items()
         if entry.elsewhere is not None
     }
+    if sheet.iri.startswith(ONTOLOGY_IRI):
+        problems.add(
+            document.place("iri"),
+            f"iri: {sheet.iri} is the ontology's own; choose one, as in https://example.org/home#",
+        )
     for index, home in enumerate(extension.homes):
         path = file.parent / home
         if not path.is_file():

@@ -7,12 +7,13 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from afkb.extensions.problems import Problems, nearest
+from afkb.extensions.problems import Problems, nearest_of
 from afkb.extensions.yaml_model import SECTIONS, Extension
 from afkb.extensions.yaml_reading import Document
 
 _MENDS = {
     "list_type": "write a list, as in [0.2, 0.4]",
+    "greater_than": "write 0.01 for what is very rare",
     "too_short": "write as many numbers as the format has",
     "too_long": "write as many numbers as the format has",
     "float_type": "write a number, with a point and without a unit",
@@ -23,6 +24,13 @@ _MENDS = {
     "literal_error": "write one of them",
     "dict_type": "write keys and values below it",
     "model_type": "write keys and values below it",
+}
+_LISTS_OF_WORDS = {
+    "materials": "[WoodMaterial]",
+    "traits": "[FlatTop]",
+    "afbits": "[SupportAbility = 0.9]",
+    "homes": "[my-rooms.csv]",
+    "examples": "[the bench below the window]",
 }
 _PATTERNS = {
     "license": "write its address, as in https://creativecommons.org/licenses/by/4.0/",
@@ -65,7 +73,7 @@ def _problem(details: ErrorDetails) -> str:
     loc, kind = details["loc"], details["type"]
     where = ".".join(str(part) for part in loc)
     if kind == "extra_forbidden":
-        return f"{where}: unknown key; {nearest(str(loc[-1]), _keys_beside(loc))}"
+        return f"{where}: unknown key; {nearest_of(str(loc[-1]), _keys_beside(loc))}"
     if kind == "missing":
         return f"{where} is missing; fill it"
     if kind == "string_pattern_mismatch":
@@ -73,8 +81,11 @@ def _problem(details: ErrorDetails) -> str:
         return f"{where}: {details['input']!r} is not of that form; {mend}"
     said = details["msg"][:1].lower() + details["msg"][1:]
     given = details["input"]
+    mend = _MENDS.get(kind, "mend the value")
+    if kind == "list_type" and loc[-1] in _LISTS_OF_WORDS:
+        mend = f"write a list, as in {_LISTS_OF_WORDS[str(loc[-1])]}"
     shown = "" if isinstance(given, dict | list) else f", not {given!r}"
-    return f"{where}: {said}{shown}; {_MENDS.get(kind, 'mend the value')}"
+    return f"{where}: {said}{shown}; {mend}"
 
 
 def _keys_beside(loc: tuple[int | str, ...]) -> list[str]:

@@ -70,13 +70,13 @@ class AfNet:
 
     @cached_property
     def _read(self) -> Content:
-        missing = [file for file in self.files if not file.exists()]
-        if missing:
-            raise KnowledgeError(f"{missing[0]}: no such ontology file")
         return cached("content", self._key, lambda: read_content(self.files))
 
     @cached_property
     def _key(self) -> str:
+        missing = [file for file in self.files if not file.exists()]
+        if missing:
+            raise KnowledgeError(f"{missing[0]}: no such ontology file; check the name")
         if not self._extensions:
             return content_key(self.files)
         from afkb.extensions import files_behind

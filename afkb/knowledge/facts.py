@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,19 +11,26 @@ from pathlib import Path
 from pyoxigraph import BlankNode, NamedNode, Triple
 
 from afkb.errors import KnowledgeError
-from afkb.ontology.names import AFN, ONTOLOGY_IRI, OWL, RDF_TYPE, property_iri
+from afkb.ontology.names import AFN, ONTOLOGY_IRI, OWL, RDF_TYPE, fragment, property_iri
 from afkb.ontology.rdf_files import RDF_FORMATS, read_triples
+
+_Statement = tuple[str, str, str, bool]
+"""Subject, property, value, and whether it is a text in another language than English."""
 
 
 @dataclass(slots=True)
 class Facts:
     """Subject to property to values, with the file in which each subject is first met.
 
-    IRIs and literals are plain strings; blank nodes' statements are left out.
+    IRIs and literals are plain strings; blank nodes' statements are left out. Texts in other
+    languages than English count where there is none in English. `again`: the file that states
+    another value of a subject's property.
     """
 
     values: dict[str, dict[str, list[str]]] = field(default_factory=dict)
     file_of: dict[str, Path] = field(default_factory=dict)
+    again: dict[tuple[str, str], Path] = field(default_factory=dict)
+    in_other_languages: dict[tuple[str, str], str] = field(default_factory=dict)
 
     def of_type(self, class_name: str) -> list[str]:
         """IRIs of the individuals of one of the ontology's classes, by name."""
@@ -38,7 +46,11 @@ class Facts:
         found = self.values.get(subject, {}).get(property_iri(prop), [])
         if len(found) > 1:
             values = ", ".join(sorted(found))
-            raise self.error(subject, f"{prop} is stated {len(found)} times: {values}")
+            raise self.error(
+                subject,
+                f"{fragment(prop)} is stated {len(found)} times: {values}",
+                self.again.get((subject, property_iri(prop))),
+            )
         return found[0] if found else None
 
     def text(self, subject: str, prop: str, default: str | None = None) -> str:
@@ -70,14 +82,14 @@ class Facts:
             raise self.error(subject, f"{prop} {number} is not in 0..1")
         return number
 
-    def error(self, subject: str, problem: str) -> KnowledgeError:
+    def error(self, subject: str, problem: str, file: Path | None = None) -> KnowledgeError:
         """The error to raise about a subject, with its file and line."""
-        name = subject.removeprefix(AFN)
-        return KnowledgeError(f"{self.place(subject)}: {name}: {problem}; mend it there")
+        place = self.place(subject, file)
+        return KnowledgeError(f"{place}: {fragment(subject)}: {problem}; mend it there")
 
-    def place(self, subject: str) -> str:
+    def place(self, subject: str, file: Path | None = None) -> str:
         """File and line where a subject is stated, as far as they can be told."""
-        file = self.file_of.get(subject)
+        file = file or self.file_of.get(subject)
         row = self.many(subject, "fromRow")
         if file is None:
             return row[0] if row else "?"
@@ -101,11 +113,13 @@ def read_facts(files: Sequence[Path]) -> Facts:
     for file in files:
         if file in plain or file.suffix in RDF_FORMATS:
             _collect(plain.get(file) or _statements(file), file, facts)
+    for (subject, predicate), text in facts.in_other_languages.items():
+        facts.values.setdefault(subject, {}).setdefault(predicate, [text])
     _check_imports(facts)
     return facts
 
 
-def _extensions(files: Sequence[Path]) -> dict[Path, list[tuple[str, str, str]]]:
+def _extensions(files: Sequence[Path]) -> dict[Path, list[_Statement]]:
     """The statements of extensions in YAML or tables; all extensions are checked on the way."""
     if len(files) < 2:
         return {}
@@ -114,33 +128,40 @@ def _extensions(files: Sequence[Path]) -> dict[Path, list[tuple[str, str, str]]]
     from afkb.extensions import read_stack
 
     return {
-        path: [(str(s), str(p), str(o)) for s, p, o in graph if isinstance(s, URIRef)]
+        path: [(str(s), str(p), str(o), False) for s, p, o in graph if isinstance(s, URIRef)]
         for path, graph in read_stack(files).items()
     }
 
 
-def _statements(file: Path) -> Iterable[tuple[str, str, str]]:
+def _statements(file: Path) -> Iterable[_Statement]:
     return [_plain(t) for t in read_triples(file) if not isinstance(t.subject, BlankNode)]
 
 
-def _plain(triple: Triple) -> tuple[str, str, str]:
+def _plain(triple: Triple) -> _Statement:
     subject, value = triple.subject, triple.object
     assert isinstance(subject, NamedNode)
     text = f"_:{value.value}" if isinstance(value, BlankNode) else getattr(value, "value", "")
-    return subject.value, triple.predicate.value, text
+    foreign = getattr(value, "language", None) not in (None, "en")
+    return subject.value, triple.predicate.value, text, foreign
 
 
-def _collect(statements: Iterable[tuple[str, str, str]], file: Path, facts: Facts) -> None:
+def _collect(statements: Iterable[_Statement], file: Path, facts: Facts) -> None:
     says_something = False
-    for subject, predicate, value in statements:
+    for subject, predicate, value, foreign in statements:
+        if foreign:
+            facts.in_other_languages.setdefault((subject, predicate), value)
+            says_something = True
+            continue
         properties = facts.values.setdefault(subject, {})
         values = properties.setdefault(predicate, [])
         if value not in values:
             values.append(value)
+            if facts.file_of.get(subject, file) != file:
+                facts.again[subject, predicate] = file
         facts.file_of.setdefault(subject, file)
         says_something = says_something or predicate != RDF_TYPE
     if not says_something:
-        raise KnowledgeError(f"{file}: states nothing; expected an ontology or an extension of one")
+        raise KnowledgeError(f"{file}: states nothing; start one with `afkb ontology new`")
 
 
 def _check_imports(facts: Facts) -> None:
@@ -156,11 +177,13 @@ def _check_imports(facts: Facts) -> None:
 
 def _line_of(file: Path, subject: str) -> int | None:
     """The line on which an OWL file speaks of a subject first, or None."""
-    name = subject.rsplit("#", 1)[-1].rsplit("/", 1)[-1]
+    name = fragment(subject)
+    about = re.compile(rf'(?:about|ID)="(?:[^"]*[#/;])?{re.escape(name)}"')
     marks = (f'"{subject}"', f'#{name}"', f"<{subject}>", f":{name} ")
     try:
         lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         return None
-    about = [n for n, line in enumerate(lines, start=1) if any(mark in line for mark in marks)]
-    return about[0] if about else None
+    numbered = list(enumerate(lines, start=1))
+    named = (n for n, line in numbered if any(mark in line for mark in marks))
+    return next((n for n, line in numbered if about.search(line)), next(named, None))

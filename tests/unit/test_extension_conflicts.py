@@ -55,7 +55,7 @@ CONFLICTS = {
     ),
     "an unknown shape": (
         KIOSK + "    shape: Box\n",
-        "home.yaml, line 8: shape Box is not in the ontology; did you mean BoxShape?",
+        "home.yaml, line 8: Box is a category, no shape; did you mean BoxShape?",
     ),
     "an unknown material": (
         KIOSK + "    materials: [Wood]\n",

@@ -81,7 +81,7 @@ IN_OWL = {
     ),
     "a name of another namespace": (
         [(f"{AFN}HangAbility", "https://example.org/shop#HangAbility")],
-        "shop.owl, line 33: feature HangAbility is not in the ontology",
+        "shop.owl, line 33: feature HangAbility is not in that namespace; write <https:",
     ),
     "an unknown scale": (
         [("&afn;Large", "&afn;Largish")],

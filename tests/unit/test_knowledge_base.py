@@ -101,15 +101,15 @@ def test_a_bad_extension_is_refused_with_its_file(
 def test_an_extension_may_not_state_another_number(tmp_path: Path, base: AfNet) -> None:
     mug = '<rdf:Description rdf:about="https://w3id.org/afkb/afnet#Mug">'
     body = mug + "<afn:matchingWeight>0.9</afn:matchingWeight></rdf:Description>"
-    with pytest.raises(KnowledgeError, match="Mug: matchingWeight is stated 2 times"):
+    with pytest.raises(KnowledgeError, match=r"home\.owl, line 6: Mug: matchingWeight is stated by"):
         _ = base.extended([extension(tmp_path, body)]).categories
 
 
-def test_a_feature_may_not_be_broader_than_itself(tmp_path: Path, base: AfNet) -> None:
+def test_an_extension_may_not_turn_the_features_round(tmp_path: Path, base: AfNet) -> None:
     contain = '<rdf:Description rdf:about="https://w3id.org/afkb/afnet#ContainAbility">'
     narrower = "https://w3id.org/afkb/afnet#IntrinsicContainAbility"
     body = f'{contain}<skos:broader rdf:resource="{narrower}"/></rdf:Description>'
-    with pytest.raises(KnowledgeError, match="is broader than itself"):
+    with pytest.raises(KnowledgeError, match="ContainAbility: broader is stated by"):
         _ = base.extended([extension(tmp_path, body)]).features
 
 
