@@ -101,7 +101,7 @@ def test_a_bad_extension_is_refused_with_its_file(
 def test_an_extension_may_not_state_another_number(tmp_path: Path, base: AfNet) -> None:
     mug = '<rdf:Description rdf:about="https://w3id.org/afkb/afnet#Mug">'
     body = mug + "<afn:matchingWeight>0.9</afn:matchingWeight></rdf:Description>"
-    with pytest.raises(KnowledgeError, match=r"home\.owl, line 6: Mug: matchingWeight is stated by"):
+    with pytest.raises(KnowledgeError, match=r"home\.owl, line 6: Mug: matchingWeight is stated"):
         _ = base.extended([extension(tmp_path, body)]).categories
 
 
