@@ -27,11 +27,12 @@ def reference(
 
     Example: afkb ontology reference --out reference.html
     """
+    from afkb.ontology.writing import put_whole
     from afkb.reference import reference_page
 
     page = reference_page(state_of(ctx).host.knowledge_base.extended(extensions or []))
     try:
-        out.write_text(page, encoding="utf-8")
+        put_whole(out, page)
     except OSError as error:
         raise KnowledgeError(f"{out}: can't be written: {error.strerror}; choose --out") from error
     print_text(str(out))

@@ -33,6 +33,11 @@ def check_changes(statements: Statements, earlier: Terms, problems: Problems) ->
                 "leave that out",
             )
     _check_subclasses(statements, known, problems)
+    for class_name in statements.unnamed:
+        problems.add(
+            statements.file,
+            f"an individual of {class_name} has no IRI, so nobody could read it; give it one",
+        )
 
 
 def _states_again(term: Term, statements: Statements) -> bool:

@@ -10,8 +10,9 @@ from xml.parsers import expat
 
 from pyoxigraph import Literal, NamedNode, RdfFormat
 
-from afkb.extensions.statements import Statements
-from afkb.ontology.names import RDF
+from afkb.extensions.statements import KEYED, Statements
+from afkb.extensions.terms import WORD_OF
+from afkb.ontology.names import AFN, RDF, RDF_TYPE
 from afkb.ontology.rdf_files import RDF_FORMATS, read_triples
 
 _XML_BASE = "http://www.w3.org/XML/1998/namespace base"
@@ -28,6 +29,10 @@ def owl_statements(path: Path) -> Statements:
         if isinstance(subject, NamedNode):
             text = value.value if isinstance(value, NamedNode | Literal) else str(value)
             statements.add(subject.value, triple.predicate.value, text)
+        elif isinstance(value, NamedNode) and triple.predicate.value == RDF_TYPE:
+            class_name = value.value.removeprefix(AFN)
+            if class_name in WORD_OF or class_name in KEYED:
+                statements.unnamed.append(class_name)
     form = RDF_FORMATS[path.suffix]
     if form is RdfFormat.RDF_XML:
         statements.places = _Lines(path).places()

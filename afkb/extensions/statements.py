@@ -13,7 +13,7 @@ from afkb.extensions.terms import WORD_OF, Term, Terms, scale_limits
 from afkb.ontology.names import AFN, RDF_TYPE, SKOS, Names, fragment, property_iri
 from afkb.ontology.statements import add_individual
 
-_KEYS = {
+KEYED = {
     "Afbit": ("ofCategory", "ofPart", "ofFeature"),
     "RoomEvidence": ("ofRoom", "ofEvidenceClass"),
     "Trapezoid": ("ofFeature", "parameterName"),
@@ -23,11 +23,15 @@ _KEYS = {
 
 @dataclass(slots=True)
 class Statements:
-    """Subject to property to values, all as text; and the place of each, as far as it is known."""
+    """Subject to property to values, all as text; and the place of each, as far as it is known.
+
+    `unnamed`: the classes of this ontology whose individuals have no IRI; nobody reads those.
+    """
 
     values: dict[str, dict[str, list[str]]] = field(default_factory=dict)
     places: dict[tuple[str, str], str] = field(default_factory=dict)
     file: str = ""
+    unnamed: list[str] = field(default_factory=list)
 
     def add(self, subject: str, prop: str, value: str) -> None:
         """Add one statement."""
@@ -55,7 +59,7 @@ class Statements:
 
     def keyed(self) -> Iterator[tuple[tuple[str, ...], str]]:
         """Key and subject of each statement that has a key."""
-        for name, props in _KEYS.items():
+        for name, props in KEYED.items():
             for subject in self.of_type(name):
                 parts = [fragment(self.one(subject, prop)) for prop in props]
                 yield tuple(part for part in parts if part), subject

@@ -45,6 +45,9 @@ def counted_pairs(
 
 
 def _scaled_up(smaller: Row, larger: Row) -> bool:
+    for row in (smaller, larger):
+        if row["scale"] not in _SCALES:
+            raise row.error(f"scale {row['scale']!r} is none of: {', '.join(_SCALES)}; mend it")
     return _SCALES.index(smaller["scale"]) < _SCALES.index(larger["scale"])
 
 

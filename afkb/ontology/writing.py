@@ -34,7 +34,11 @@ def put_whole(path: Path, text: str) -> None:
     """Replace a file by a new one in one step, so that nobody reads half of it.
 
     Raises `OSError` where the folder can't be written to; the old file then stays as it was.
+    What is no file, as /dev/stdout, is written to as it stands.
     """
+    if path.exists() and not path.is_file():
+        path.write_text(text, encoding="utf-8")
+        return
     mode = path.stat().st_mode & 0o777 if path.exists() else 0o644
     handle, scratch = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:

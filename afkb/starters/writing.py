@@ -63,5 +63,10 @@ def _write(source: Path, out: Path, named: Path) -> Path:
     text = source.read_text(encoding="utf-8")
     text = text.replace("{name}", slug(named.stem)).replace("{file}", named.name)
     with out.open("x", encoding="utf-8", newline="") as file:
-        file.write(text)
+        try:
+            file.write(text)
+            file.flush()
+        except BaseException:
+            out.unlink(missing_ok=True)
+            raise
     return out

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from afkb.csv_rows import Row
+from afkb.errors import KnowledgeError
 from afkb.knowledge import AfNet
 from afkb.knowledge.cache import cache_folder, cached, content_key
+from afkb.ontology.counted_pairs import _scaled_up
 from afkb.starters import write_starter
 from extension_samples import HEAD, KIOSK, problems, table, yaml_file
 
@@ -134,6 +139,12 @@ def test_an_owl_file_changes_nothing_that_is_there(tmp_path: Path, change: str) 
     assert any(s.startswith(f"shop.owl, line {line}: {expected}") for s in said), said
 
 
+def test_an_individual_without_an_iri_is_told(tmp_path: Path) -> None:
+    assert problems(_owl(tmp_path, "<afn:Afbit><afn:strength>0.9</afn:strength></afn:Afbit>")) == [
+        "shop.owl: an individual of Afbit has no IRI, so nobody could read it; give it one"
+    ]
+
+
 def test_an_editors_translations_are_read(tmp_path: Path) -> None:
     german = '<rdfs:label xml:lang="de">{}</rdfs:label></rdf:Description>'
     own = '<rdf:Description rdf:about="https://example.org/shop#Terrarium">'
@@ -170,3 +181,37 @@ def test_a_missing_extension_is_named(tmp_path: Path) -> None:
 
 def test_the_head_alone_is_an_extension(tmp_path: Path) -> None:
     assert "Mug" in AfNet.load(extensions=[yaml_file(tmp_path, "", head=HEAD)]).categories
+
+
+def test_a_scale_that_no_table_has_is_told_with_its_row() -> None:
+    rows = [Row("categories/a.csv", line, {"scale": s}) for line, s in ((2, "Small"), (3, "Huge"))]
+    with pytest.raises(KnowledgeError, match=r"categories/a\.csv, line 3: scale 'Huge' is none"):
+        _scaled_up(*rows)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of files are POSIX")
+def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path) -> None:
+    """A limit on the size of files stands for the disk that is full."""
+    script = """
+import resource, signal, sys
+from pathlib import Path
+from afkb.errors import KnowledgeError
+from afkb.knowledge.cache import put
+from afkb.starters import write_starter
+from afkb.csv_rows import Row
+from afkb.errors import KnowledgeError
+from afkb.ontology.counted_pairs import _scaled_up
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+folder = Path(sys.argv[1])
+put(folder / "entry", b"." * 5000)
+try:
+    write_starter(folder / "home.yaml")
+except KnowledgeError as error:
+    print(error)
+"""
+    out = subprocess.run(
+        [sys.executable, "-c", script, str(tmp_path)], capture_output=True, text=True, check=True
+    )
+    assert "home.yaml: can't be written: File too large" in out.stdout
+    assert list(tmp_path.iterdir()) == []
