@@ -68,6 +68,8 @@ def test_the_wheel_holds_what_is_needed_and_no_more(wheel: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
     for needed in (
         "afkb/_ontology/afnet.owl",
+        "afkb/_ontology/shapes/afbits.ttl",
+        "afkb/_ontology/counts/rooms.csv",
         "afkb/py.typed",
         "afkb/testing/__init__.py",
         "afkb_simulation/worlds/paper_home.world.yaml",
@@ -76,7 +78,9 @@ def test_the_wheel_holds_what_is_needed_and_no_more(wheel: Path) -> None:
         assert needed in names
     tops = {n.split("/")[0] for n in names}
     assert all(t.startswith("afkb") for t in tops), tops
-    assert not [n for n in names if n.endswith((".pyc", ".md"))]
+    assert "afkb/starters/files/tables/README.md" in names  # a template that `new` copies
+    documents = [n for n in names if n.endswith(".md") and not n.startswith("afkb/starters/")]
+    assert not [n for n in names if n.endswith(".pyc")] + documents
 
 
 def test_the_demo_maps_the_bundled_home(folder: Path) -> None:
