@@ -164,12 +164,10 @@ def _features(kb: AfNet, prior: Array) -> dict[str, Array]:
 def _inherited(kb: AfNet, category: Category) -> dict[str, float]:
     """How often each feature is reported: the category's rates, else its afbits, else inherited."""
     bits: dict[str, float] = {}
-    seen: set[str] = set()
-    current: Category | None = category
-    while current is not None and current.name not in seen:
-        seen.add(current.name)
-        bits = {**current.afbits, **current.report_rates, **bits}
-        current = kb.categories.get(current.broader) if current.broader else None
+    for name in kb.kinds_of(category.name):
+        if name in kb.categories:
+            kind = kb.categories[name]
+            bits = {**kind.afbits, **kind.report_rates, **bits}
     return bits
 
 

@@ -19,7 +19,8 @@ class RelationshipNetwork:
     - `duals`: dual to P(predicted is there | its evidence is there) (paper §II.D.ii).
     - `rules`: co-occurrence rule to (C,) P(predicted is there | category of the seen thing): the
       rule's strength, or that of the strongest listed pair of the same feature whose predicted
-      category is of the rule's predicted class (paper §II.D.iii).
+      category is of the rule's predicted class, for the category or else the nearest broader one
+      that has one (paper §II.D.iii).
     """
 
     categories: tuple[str, ...]
@@ -37,9 +38,11 @@ class RelationshipNetwork:
                 if _modulates(pair, rule, kb):
                     strongest = max(pair.strength, listed.get(pair.evidence_category, 0.0))
                     listed[pair.evidence_category] = strongest
-            rules[rule.name] = np.array(
-                [_strength(kb, name, listed, rule.strength) for name in names]
-            )
+            strengths = [
+                next((listed[k] for k in kb.kinds_of(name) if k in listed), rule.strength)
+                for name in names
+            ]
+            rules[rule.name] = np.array(strengths)
         return cls(names, {d.name: d.strength for d in kb.duals}, rules)
 
     def dual(self, name: str) -> float:
@@ -61,20 +64,6 @@ class RelationshipNetwork:
         if not total > 0:
             raise EvidenceError("the category posterior of the seen thing is empty")
         return float(self.rules[name] @ weights / total)
-
-
-def _strength(
-    kb: AfNet, category: str, listed: Mapping[str | None, float], otherwise: float
-) -> float:
-    """Of the listed pair of the category, else of the nearest broader one that has one."""
-    seen: set[str] = set()
-    current: str | None = category
-    while current is not None and current not in seen:
-        if current in listed:
-            return listed[current]
-        seen.add(current)
-        current = kb.categories[current].broader if current in kb.categories else None
-    return otherwise
 
 
 def _modulates(pair: CoOccurrence, rule: CoOccurrence, kb: AfNet) -> bool:

@@ -24,6 +24,7 @@ from afkb.knowledge.model import (
 )
 from afkb.ontology.bundled import bundled_ontology
 from afkb.ontology.names import UNKNOWN_ROOM, fragment
+from afkb.ontology.subjects import kinds_of
 
 if TYPE_CHECKING:
     from afkb.figures import Figures
@@ -165,6 +166,14 @@ class AfNet:
             if scale.extent_m[0] <= largest < scale.extent_m[1]:
                 return scale.name
         raise KnowledgeError(f"{self.files[0]}: no scale covers an extent of {largest} m; add one")
+
+    def kinds_of(self, category: str) -> list[str]:
+        """The category and everything broader than it, groups among them, nearest first."""
+        return kinds_of(category, self._broader)
+
+    @cached_property
+    def _broader(self) -> dict[str, str]:
+        return {name: category.broader or "" for name, category in self.categories.items()}
 
     def iri(self, name: str) -> str:
         """The full IRI of a term by its name; `KnowledgeError` for a name that nothing has."""

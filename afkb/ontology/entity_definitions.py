@@ -17,6 +17,7 @@ from rdflib.term import Node
 from afkb.csv_rows import Row
 from afkb.ontology.entity_classes import class_name
 from afkb.ontology.names import AFN
+from afkb.ontology.subjects import kinds_of
 
 TABLE = "entity_definitions"
 
@@ -98,19 +99,11 @@ def unsound(
         if definition.name not in known:
             continue
         for thing in things:
-            is_one = definition.name in _upwards(thing.category, broader)
+            is_one = definition.name in kinds_of(thing.category, broader)
             if definition.holds(thing) and not is_one:
                 yield f"{definition.row.place}: {thing.category} fits, and is no {definition.name}"
             if is_one and not definition.holds(thing):
                 yield f"{definition.row.place}: {thing.category} is one, and does not fit"
-
-
-def _upwards(name: str, broader: Mapping[str, str]) -> set[str]:
-    found: set[str] = set()
-    while name and name not in found:
-        found.add(name)
-        name = broader.get(name, "")
-    return found
 
 
 def add_definitions(graph: Graph, definitions: Iterable[EntityDefinition]) -> None:
