@@ -9,7 +9,7 @@ from threading import Lock
 from typing import TYPE_CHECKING
 
 from afkb.errors import KnowledgeError
-from afkb.knowledge.cache import cached, content_key
+from afkb.knowledge.cache import cached, content_key, ontology_key
 from afkb.knowledge.content import Content, read_content
 from afkb.knowledge.facts import Facts, read_facts
 from afkb.knowledge.model import (
@@ -75,14 +75,7 @@ class AfNet:
 
     @cached_property
     def _key(self) -> str:
-        missing = [file for file in self.files if not file.exists()]
-        if missing:
-            raise KnowledgeError(f"{missing[0]}: no such ontology file; check the name")
-        if not self._extensions:
-            return content_key(self.files)
-        from afkb.extensions import files_behind
-
-        return content_key(files_behind(self.files))
+        return ontology_key(self.files)
 
     @cached_property
     def _facts(self) -> Facts:

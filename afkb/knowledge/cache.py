@@ -17,6 +17,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, TypeVar
 
+from afkb.errors import KnowledgeError
+
 T = TypeVar("T")
 _KEPT_S = 30 * 24 * 3600.0
 """Entries that nobody used for so long are removed when a new one is written."""
@@ -46,6 +48,21 @@ def content_key(files: Sequence[Path]) -> str:
         for part in sorted(file.rglob("*.csv")) if file.is_dir() else [file]:
             digest.update(part.name.encode() + b"\0" + part.read_bytes() + b"\0")
     return digest.hexdigest()[:32]
+
+
+def ontology_key(files: Sequence[Path]) -> str:
+    """The key of an ontology and its extensions, with the tables of homes that these bring.
+
+    `KnowledgeError` for a file that isn't there.
+    """
+    missing = [file for file in files if not file.exists()]
+    if missing:
+        raise KnowledgeError(f"{missing[0]}: no such ontology file; check the name")
+    if len(files) == 1:
+        return content_key(files)
+    from afkb.extensions import files_behind
+
+    return content_key(files_behind(files))
 
 
 def cached(name: str, key: str, make: Callable[[], T]) -> T:

@@ -15,8 +15,8 @@ from pyoxigraph import (
     Store,
 )
 
-from afkb.errors import KnowledgeError, QueryError
-from afkb.knowledge.cache import cached_file, content_key
+from afkb.errors import QueryError
+from afkb.knowledge.cache import cached_file, ontology_key
 from afkb.knowledge.closure import classify, close_ontology, closed_ontology
 from afkb.knowledge.definitions import Definitions
 from afkb.ontology.rdf_files import RDF_FORMATS, unreadable
@@ -84,24 +84,13 @@ def load_closed(store: Store, files: Sequence[Path]) -> None:
     """Add the ontology, its extensions and what they entail, from a cache where that was done."""
     if not files:
         return
-    for path in files:
-        if not path.exists():
-            raise KnowledgeError(f"{path}: no such ontology file")
-    kept = cached_file("closed.nq", _key(files), lambda: _closed(files))
+    kept = cached_file("closed.nq", ontology_key(files), lambda: _closed(files))
     if kept is None:
         load_ontologies(store, files)
         close_ontology(store)
         return
     # Lenient: it was checked when it was first read, and reads in three quarters of the time.
     store.bulk_load(path=str(kept), format=RdfFormat.N_QUADS, lenient=True)
-
-
-def _key(files: Sequence[Path]) -> str:
-    if len(files) == 1:
-        return content_key(files)
-    from afkb.extensions import files_behind
-
-    return content_key(files_behind(files))
 
 
 def _closed(files: Sequence[Path]) -> bytes:
