@@ -4,7 +4,7 @@ source → `View` → detectors → `Detection` → filtrations and network → 
 → `TopologicalMap` → store, exports, report.
 """
 
-from afkb.flow.detection import Detection, OrientedBox
+from afkb.flow.detection import Detection, OrientedBox, Primitive
 from afkb.flow.hypothesis import Hypothesis, Relation
 from afkb.flow.sensing import LaserScan, PinholeCamera, SkippedFrame, View
 from afkb.flow.topological_map import (
@@ -35,6 +35,7 @@ __all__ = [
     "OccupancyGrid",
     "OrientedBox",
     "PinholeCamera",
+    "Primitive",
     "Relation",
     "RobotPlace",
     "Room",

@@ -30,6 +30,25 @@ class OrientedBox:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Primitive:
+    """The simple shape that fits a body best, upright or not, in the map frame.
+
+    - `kind`: `box`, `cylinder`, `sphere`, `cone` or `superquadric`.
+    - `T_map_body`: 4x4, the body's own axes; a cylinder's or cone's axis is its z, whose positive
+      end is the narrow one of a cone.
+    - `size_xyz`: full size along these axes, m. `exponents`: (e1, e2) of the superquadric that it
+      is (Jaklic et al. 2000): box near 0, cylinder (0, 1), sphere (1, 1).
+    - `residual_m`: rms distance of the visible points from it.
+    """
+
+    kind: str
+    T_map_body: NDArray[np.float64]
+    size_xyz: tuple[float, float, float]
+    exponents: tuple[float, float]
+    residual_m: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Detection:
     """One affordance-bearing thing, surface or bound seen in one view, in the map frame.
 
@@ -46,6 +65,14 @@ class Detection:
     - `extent_known`: False where the sensor returns too little to tell how far it reaches
       (glossy or black tops); position is then that of the part that was seen.
     - `range_m`: distance from the sensor to the nearest part, m.
+    - `about`: index, among the view's earlier detections, of one of the same thing: this one adds
+      to what that affords, and shares its place. None for what is told of for the first time.
+    - `pixels`: (n,) int32 flat indexes (v * width + u) into the depth image of what shows it; None
+      where none are kept.
+    - `rings_xy`: outline seen from above, m: the outer ring (N, 2), then its holes; may be empty.
+    - `border`: shares of the outline that are `real`, `occluded` by something nearer, `cut` by the
+      image edge, or `missing` (the sensor returns nothing beyond); they sum to 1, or it is empty.
+    - `primitive`: the simple shape of a body, or None.
     """
 
     detector: str
@@ -61,6 +88,11 @@ class Detection:
     cut_by_image: bool = False
     extent_known: bool = True
     measures: Mapping[str, float] = field(default_factory=dict)
+    about: int | None = None
+    pixels: NDArray[np.int32] | None = None
+    rings_xy: tuple[NDArray[np.float64], ...] = ()
+    border: Mapping[str, float] = field(default_factory=dict)
+    primitive: Primitive | None = None
 
     def __post_init__(self) -> None:
         if not self.affordances:

@@ -45,8 +45,9 @@ class Detector(Protocol):
     """Grounds affordance features in a view (paper §II.A, symbol grounding).
 
     - `name`: unique; what `--detector` takes. `affordances`: names of the features it can report.
-    - `stage`: 0 for what stands by itself (supports, bounds), 1 for what needs stage 0 (things on
-      supports): coarse before fine, as the filtrations go.
+    - `stage`: coarse before fine, as the filtrations go: 0 for what stands by itself (supports,
+      bounds), 1 for what needs stage 0 (things on supports), 2 for what needs both (hollows of
+      things), 3 for what any of these may afford besides.
     """
 
     @property
@@ -61,7 +62,7 @@ class Detector(Protocol):
 
     @property
     def stage(self) -> int:
-        """0 for what stands by itself, 1 for what needs the detections of stage 0."""
+        """0 for what stands by itself, else it sees the detections of all lower stages."""
         ...
 
     def detect(self, view: View, earlier: Sequence[Detection]) -> Sequence[Detection]:

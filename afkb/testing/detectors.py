@@ -68,6 +68,8 @@ def _check_on(detector: Detector, view: View, earlier: Sequence[Detection], who:
         require(
             d.detector == detector.name, where, f"signs as {d.detector!r}", "sign with its name"
         )
+        told = d.about is None or 0 <= d.about < len(earlier)
+        require(told, where, f"is about detection {d.about} of {len(earlier)}", "index `earlier`")
         undeclared = sorted(set(d.affordances) - set(detector.affordances))
         require(not undeclared, where, f"reports undeclared {undeclared}", "add to `affordances`")
 
@@ -98,6 +100,10 @@ def _check_shape(d: Detection, who: str) -> None:
             ends, who, "segment_xy is no finite (2, 2)", "give both end points in the map frame"
         )
     require(d.n_pixels > 0, who, f"n_pixels is {d.n_pixels}", "count the pixels or beams behind it")
+    whole = not d.border or abs(sum(d.border.values()) - 1) < 1e-6
+    require(whole, who, f"border {dict(d.border)} does not sum to 1", "give shares of the outline")
+    rings = all(r.ndim == 2 and r.shape[1] == 2 and len(r) >= 3 for r in d.rings_xy)
+    require(rings, who, "rings_xy holds what is no ring", "give (N, 2) points, N >= 3")
 
 
 def _check_place(d: Detection, view: View, who: str) -> None:
@@ -111,3 +117,8 @@ def _check_place(d: Detection, view: View, who: str) -> None:
         u0, v0, u1, v1 = d.image_box
         inside = 0 <= u0 < u1 <= view.camera.width and 0 <= v0 < v1 <= view.camera.height
         require(inside, who, f"image_box {d.image_box} leaves the image", "clip it, half-open")
+    if d.pixels is not None and view.depth_m is not None:
+        flat = d.pixels.ndim == 1 and d.pixels.dtype == np.int32 and len(d.pixels) > 0
+        require(flat, who, "pixels is no filled (n,) int32", "give v * width + u of each pixel")
+        held = bool((d.pixels >= 0).all() and (d.pixels < view.depth_m.size).all())
+        require(held, who, "pixels leave the image", "give v * width + u of each pixel")
