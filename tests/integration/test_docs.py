@@ -126,7 +126,8 @@ def test_what_is_named_without_being_run_is_there(block: Block, recordings: Path
             paths = [w for w in words if "/" in w or w.startswith(".")]
             assert all((ROOT / p.split("[")[0]).exists() for p in paths), line
         elif command == "python":
-            assert (ROOT / words[1].replace(".", "/")).with_suffix(".py").exists(), line
+            module = ROOT / words[1].replace(".", "/")
+            assert module.with_suffix(".py").exists() or (module / "__main__.py").exists(), line
         else:
             assert command in {"afkb", "cd", "git", "source", ".venv/bin/afkb"}, line
 

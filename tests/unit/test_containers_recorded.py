@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from afkb.plugins.host import PluginHost
-from bench.detectors import placed_views, run_detectors, score
+from bench.detectors import containers, surfaces
+from bench.detectors.data import Home
 
 
 @pytest.fixture(scope="module")
@@ -17,10 +17,11 @@ def scored(data_dir: Path) -> dict[str, Any]:
     home = data_dir / "homes" / "merom"
     if not home.is_dir():
         pytest.skip(f"no recording at {home}")
-    host = PluginHost()
-    truth = json.loads((home / "truth.json").read_text())
-    views = placed_views(host.open_source(str(home / "bag")).views(stride=6), truth)
-    return score(run_detectors(views, host.detectors(["surfaces", "containers"])), truth)
+    seen = Home(home, PluginHost(), 6, ("surfaces", "containers"))
+    return {
+        "supports": surfaces.score(seen.seen, seen.truth),
+        "containers": containers.score(seen.seen, seen.truth),
+    }
 
 
 def test_supports_are_found_at_their_height_and_nowhere_else(scored: dict[str, Any]) -> None:
