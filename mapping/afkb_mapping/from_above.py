@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from afkb.flow import OrientedBox
 from afkb_mapping.kernels import kernel
+from afkb_mapping.order_statistics import percentiles
 
 THICKNESS_M = 0.02
 """Depth given to the box of a surface whose underside isn't seen."""
+SIDE_SAMPLES = 1500
 
 
 @kernel
@@ -115,3 +117,27 @@ def box_around(
     yaw = (yaw + math.pi / 2) % math.pi - math.pi / 2
     size = (length + step_m, width + step_m, height_m)
     return OrientedBox((x, y, top_m - height_m / 2), size, yaw)
+
+
+def sides_from_above(points: NDArray[np.float64]) -> tuple[float, float]:
+    """Longer and shorter side of the smallest rectangle around a thing, strays left out, m."""
+    xy = points[:: max(1, len(points) // SIDE_SAMPLES), :2]
+    centre, _, degrees = smallest_rectangle(xy)
+    turn = math.radians(degrees)
+    sides = _sides_along(xy, centre, math.cos(turn), math.sin(turn))
+    return max(sides), min(sides)
+
+
+@kernel
+def _sides_along(
+    xy: NDArray[np.float64], centre: tuple[float, float], cos: float, sin: float
+) -> tuple[float, float]:
+    """Extent of points (N, 2) along two directions at right angles, strays left out."""
+    n = len(xy)
+    along, across = np.empty(n), np.empty(n)
+    for k in range(n):
+        x, y = xy[k, 0] - centre[0], xy[k, 1] - centre[1]
+        along[k], across[k] = x * cos + y * sin, y * cos - x * sin
+    a0, a1 = percentiles(along, 2.0, 98.0)
+    b0, b1 = percentiles(across, 2.0, 98.0)
+    return a1 - a0, b1 - b0

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb_containers.clusters import Cluster
+from afkb_mapping.bodies import Body
 from afkb_mapping.from_above import hull_candidates
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
@@ -49,14 +49,14 @@ class Opening:
 
 
 def find_opening(
-    cluster: Cluster, camera_xyz: NDArray[np.float64], min_inside: int = 12
+    body: Body, camera_xyz: NDArray[np.float64], min_inside: int = 12
 ) -> Opening | None:
     """The opening of a thing, or None where none can be made out above the noise."""
-    points, sigma = cluster.points, cluster.sigma_m
+    points, sigma = body.points, body.sigma_m
     rim = percentile(points[:, 2], 98.0)
     if camera_xyz[2] - rim < LEAST_DROP_M:
         return None
-    bands, rim_xy = _rim_of(points, cluster.depth_m, camera_xyz, rim, sigma)
+    bands, rim_xy = _rim_of(points, body.depth_m, camera_xyz, rim, sigma)
     if len(rim_xy) < MIN_RIM:
         return None
     hull = cv2.convexHull(hull_candidates(rim_xy)).reshape(-1, 2)

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from afkb_containers.stand import Stand
+from afkb_mapping.bodies import Stand
 from afkb_mapping.trapezoids import Limits, parameters
 
 if TYPE_CHECKING:
@@ -25,8 +25,7 @@ class ContainerSettings:
     - `hidden_size_m`: `size_m` of a closed body whose support isn't seen.
     - `bin_size_m`: `size_m` of what stands on the floor; `bin_depth_m`: depth of its opening.
     - `basin_width_m`: shorter side of what is let into a support.
-    - `core_m`: what rises less over its support, a magazine or a cloth, joins nothing.
-    - `above_m`: lowest and highest point of a thing over its support that is looked at.
+    - `tallest_m`: highest point of a thing over its support that is looked at.
     """
 
     size_m: Limits = (0.035, 0.05, 0.35, 0.60)
@@ -38,10 +37,7 @@ class ContainerSettings:
     basin_width_m: Limits = (0.10, 0.20, math.inf, math.inf)
     solid_height_m: Limits = (0.060, 0.075, 0.35, 0.50)
     solid_thickness_m: Limits = (0.018, 0.030, math.inf, math.inf)
-    core_m: float = 0.032
-    above_m: tuple[float, float] = (0.012, 0.50)
-    min_pixels: int = 90
-    cell_m: float = 0.01
+    tallest_m: float = 0.50
 
     def sides_m(self, stand: Stand) -> Limits:
         """Limits of the longer side of a thing, by what it stands on."""

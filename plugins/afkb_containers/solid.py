@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb_containers.clusters import Cluster
 from afkb_containers.settings import ContainerSettings
-from afkb_mapping.from_above import hull_candidates, smallest_rectangle
+from afkb_mapping.bodies import Body
+from afkb_mapping.from_above import hull_candidates
 from afkb_mapping.image_regions import extent
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile, percentiles
@@ -28,7 +28,6 @@ LEAN_DEG = (9.0, 18.0)
 """Cartons and cans stand upright; what leans further is a frame, a book or a screen."""
 NORMAL_2_TO_98 = 4.1
 """Distance between the 2nd and the 98th percentile of normal noise, in standard deviations."""
-SIDE_SAMPLES = 1500
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,14 +42,12 @@ class Solid:
     whole: float
 
 
-def solid_of(
-    cluster: Cluster, base_m: float, length_m: float, settings: ContainerSettings
-) -> Solid:
+def solid_of(body: Body, length_m: float, settings: ContainerSettings) -> Solid:
     """Judge a thing of a length, seen from above, by height, thickness and convexity."""
-    height = percentile(cluster.points[:, 2], 98.0) - base_m
-    sigma = cluster.sigma_m
-    width, lean = thickness_and_lean(cluster.points, sigma)
-    fill = image_solidity(cluster.u, cluster.v)
+    height = percentile(body.points[:, 2], 98.0) - body.base_m
+    sigma = body.sigma_m
+    width, lean = thickness_and_lean(body.points, sigma)
+    fill = image_solidity(body.u, body.v)
     degree = (
         membership(height, settings.solid_height_m)
         * membership(max(height, length_m), settings.max_extent_m)
@@ -65,30 +62,6 @@ def solid_of(
 
 def _ramp(value: float, limits: tuple[float, float]) -> float:
     return min(max((value - limits[0]) / (limits[1] - limits[0]), 0.0), 1.0)
-
-
-def sides_from_above(points: NDArray[np.float64]) -> tuple[float, float]:
-    """Longer and shorter side of the smallest rectangle around a thing, strays left out, m."""
-    xy = points[:: max(1, len(points) // SIDE_SAMPLES), :2]
-    centre, _, degrees = smallest_rectangle(xy)
-    turn = math.radians(degrees)
-    sides = _sides_along(xy, centre, math.cos(turn), math.sin(turn))
-    return max(sides), min(sides)
-
-
-@kernel
-def _sides_along(
-    xy: NDArray[np.float64], centre: tuple[float, float], cos: float, sin: float
-) -> tuple[float, float]:
-    """Extent of points (N, 2) along two directions at right angles, strays left out."""
-    n = len(xy)
-    along, across = np.empty(n), np.empty(n)
-    for k in range(n):
-        x, y = xy[k, 0] - centre[0], xy[k, 1] - centre[1]
-        along[k], across[k] = x * cos + y * sin, y * cos - x * sin
-    a0, a1 = percentiles(along, 2.0, 98.0)
-    b0, b1 = percentiles(across, 2.0, 98.0)
-    return a1 - a0, b1 - b0
 
 
 def thickness_and_lean(points: NDArray[np.float64], sigma_m: float) -> tuple[float, float]:

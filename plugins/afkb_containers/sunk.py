@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import Detection
+from afkb.flow import Detection, View
 from afkb_containers.judge import LEAST_CLAIM
-from afkb_containers.scene import Scene
 from afkb_containers.settings import ContainerSettings
+from afkb_mapping.bodies import supports_among
+from afkb_mapping.depth_points import intrinsics_of
 from afkb_mapping.from_above import box_around, hull_candidates
 from afkb_mapping.grid_components import AREA, components
 from afkb_mapping.kernels import kernel
@@ -36,8 +37,8 @@ RING = (0.60, 0.85)
 @kernel
 def _holes(
     depth_m: NDArray[np.float32],
-    points: NDArray[np.float32],
-    camera_xyz: NDArray[np.float64],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
     height_m: float,
     hull: NDArray[np.uint8],
     origin_xy: NDArray[np.float64],
@@ -49,23 +50,28 @@ def _holes(
     Whatever is seen through the hull lies in the image box of its support.
     """
     deepest = np.zeros(hull.shape, np.float32)
-    drop = camera_xyz[2] - height_m
+    camera_xyz, drop = T_map_camera[:3, 3], T_map_camera[2, 3] - height_m
+    p = np.empty(3)
     u0, v0, u1, v1 = image_box
     for v in range(v0, v1):
         for u in range(u0, u1):
             z = depth_m[v, u]
-            h = points[v, u, 2]
+            x, y = (u - intrinsics[2]) / intrinsics[0], (v - intrinsics[3]) / intrinsics[1]
+            for k in range(3):
+                T = T_map_camera[k]
+                p[k] = (T[0] * x + T[1] * y + T[2]) * z + T[3]
+            h = p[2]
             under = height_m - h
             if z <= 0 or under < EDGE_M + depth_sigma(z) or h < ABOVE_FLOOR_M:
                 continue
             t = drop / (camera_xyz[2] - h)
-            dx, dy = points[v, u, 0] - camera_xyz[0], points[v, u, 1] - camera_xyz[1]
+            dx, dy = p[0] - camera_xyz[0], p[1] - camera_xyz[1]
             i = int((camera_xyz[0] + t * dx - origin_xy[0]) / CELL_M)
             j = int((camera_xyz[1] + t * dy - origin_xy[1]) / CELL_M)
-            a = int((points[v, u, 0] - origin_xy[0]) / CELL_M)
-            b = int((points[v, u, 1] - origin_xy[1]) / CELL_M)
-            x, y = hull.shape
-            if not (0 <= i < x and 0 <= j < y and 0 <= a < x and 0 <= b < y):
+            a = int((p[0] - origin_xy[0]) / CELL_M)
+            b = int((p[1] - origin_xy[1]) / CELL_M)
+            rows, cols = hull.shape
+            if not (0 <= i < rows and 0 <= j < cols and 0 <= a < rows and 0 <= b < cols):
                 continue
             if hull[i, j] == 1 and hull[a, b] > 0:
                 deepest[i, j] = max(deepest[i, j], under)
@@ -73,20 +79,20 @@ def _holes(
 
 
 def sunk_containers(
-    scene: Scene, settings: ContainerSettings, detector: str
+    view: View, earlier: Sequence[Detection], settings: ContainerSettings, detector: str
 ) -> Iterator[Detection]:
     """Hollows in the supports of a view that are deep, wide, and ringed by their support."""
-    for support in scene.supports.detections:
+    for support in supports_among(earlier):
         height = float(support.position_xyz[2])
-        if scene.camera_xyz[2] - height < 0.05 or height < ABOVE_FLOOR_M + LEAST_DEPTH_M:
+        if view.T_map_camera[2, 3] - height < 0.05 or height < ABOVE_FLOOR_M + LEAST_DEPTH_M:
             continue
         if len(support.footprint_xy) * CELL_M**2 < LEAST_SUPPORT_M2:
             continue
-        yield from _in_support(scene, support, height, settings, detector)
+        yield from _in_support(view, support, height, settings, detector)
 
 
 def _in_support(
-    scene: Scene,
+    view: View,
     support: Detection,
     height_m: float,
     settings: ContainerSettings,
@@ -99,9 +105,11 @@ def _in_support(
     hull = np.zeros_like(top)
     cv2.fillConvexPoly(hull, cv2.convexHull(hull_candidates(ij[:, ::-1]).astype(np.int32)), 1)
     hull[(top > 0) & (hull > 0)] = ON_TOP
-    rows, cols = scene.depth_m.shape
+    assert view.depth_m is not None
+    rows, cols = view.depth_m.shape
     box = support.image_box or (0, 0, cols, rows)
-    deepest = _holes(scene.depth_m, scene.points, scene.camera_xyz, height_m, hull, origin, box)
+    camera = (intrinsics_of(view), view.T_map_camera)
+    deepest = _holes(view.depth_m, *camera, height_m, hull, origin, box)
     open_ = cv2.morphologyEx((deepest > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3)))
     parts, measures = components(open_, False)
     for k in range(1, len(measures)):

@@ -8,6 +8,7 @@ import pytest
 from afkb.flow import Detection, View
 from afkb_containers.detector import ContainerDetector
 from afkb_surfaces.detector import SurfaceDetector
+from afkb_things.detector import ThingDetector
 from depth_samples import FLOOR, Box, Cup, table, view_of
 
 TABLE = table(1.3, 0.0, 0.73)
@@ -16,7 +17,8 @@ MUG = Cup((1.2, 0.1), 0.73, 0.10, 0.045)
 
 def containers(view: View, at_least: float = 0.5) -> list[Detection]:
     surfaces = SurfaceDetector().detect(view)
-    found = ContainerDetector().detect(view, surfaces)
+    things = ThingDetector().detect(view, surfaces)
+    found = ContainerDetector().detect(view, [*surfaces, *things])
     return [d for d in found if d.affords("ContainAbility", at_least)]
 
 

@@ -17,7 +17,7 @@ def scored(data_dir: Path) -> dict[str, Any]:
     home = data_dir / "homes" / "merom"
     if not home.is_dir():
         pytest.skip(f"no recording at {home}")
-    seen = Home(home, PluginHost(), 6, ("surfaces", "containers"))
+    seen = Home(home, PluginHost(), 6, ("surfaces", "things", "containers"))
     return {
         "supports": surfaces.score(seen.seen, seen.truth),
         "containers": containers.score(seen.seen, seen.truth),

@@ -8,15 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb_containers.above import FLOOR_M
-from afkb_containers.clusters import Cluster
-from afkb_containers.scene import Scene
-from afkb_containers.stand import Stand
+from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.grid_components import HEIGHT, WIDTH, components
 from afkb_mapping.image_regions import extent, order_by_label
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
+from afkb_things.above import FLOOR_M
+from afkb_things.scene import Scene
 
 NEAREST_FLOOR_M = 0.25
 HIGHEST_M = 1.8
@@ -130,20 +129,20 @@ def _hidden_below(
     return hidden / max(total, 1)
 
 
-def things_on_hidden_supports(scene: Scene, loose: Loose, min_pixels: int) -> Iterator[Cluster]:
+def things_on_hidden_supports(scene: Scene, loose: Loose, min_pixels: int) -> Iterator[Body]:
     """Compact bodies that stand apart, seen from above, and whose foot something nearer covers."""
     for u, v, heights in _apart_from_above(loose, NEAREST_FLOOR_M, HIGHEST_M, min_pixels):
         u0, _, u1, _ = extent(u, v)
         if np.ptp(heights) > TALLEST_M or _hidden_below(u, v, scene.depth_m, u0, u1) < HIDDEN_SHARE:
             continue
-        yield Cluster(u, v, *scene.at(u, v), scene.depth_m.shape, Stand.HIDDEN, None)
+        yield Body(u, v, *scene.at(u, v), scene.depth_m.shape, Stand.HIDDEN, None)
 
 
-def things_on_the_floor(scene: Scene, loose: Loose, min_pixels: int) -> Iterator[Cluster]:
+def things_on_the_floor(scene: Scene, loose: Loose, min_pixels: int) -> Iterator[Body]:
     """Compact bodies that stand apart on the floor, as bins and baskets do."""
     for u, v, heights in _apart_from_above(loose, FLOOR_M, BIN_M[1] + 0.1, min_pixels):
         if BIN_M[0] < percentile(heights, 98.0) < BIN_M[1]:
-            yield Cluster(u, v, *scene.at(u, v), scene.depth_m.shape, Stand.ON_FLOOR, 0.0)
+            yield Body(u, v, *scene.at(u, v), scene.depth_m.shape, Stand.ON_FLOOR, 0.0)
 
 
 def _apart_from_above(

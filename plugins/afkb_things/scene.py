@@ -1,4 +1,4 @@
-"""What a view's pixels belong to, worked out once for every kind of container."""
+"""What a view's pixels belong to, worked out once for every kind of thing."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
-from afkb_containers.above import fit_supports, label_things, map_points
-from afkb_containers.settings import ContainerSettings
-from afkb_containers.supports import Supports
+from afkb_mapping.depth_points import height_per_depth, intrinsics_of, map_points
 from afkb_mapping.kernels import kernel
+from afkb_things.above import fit_supports, label_things
+from afkb_things.settings import ThingSettings
+from afkb_things.supports import Supports
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,7 +22,7 @@ class Scene:
 
     - `points`: (H, W, 3) float32, map frame. `labels`: (H, W), see `label_things`.
     - `overs_m`: (H, W), height of a point over the support that it is labelled with.
-    - `intrinsics`: fx, fy, cx, cy.
+    - `intrinsics`: fx, fy, cx, cy. `planes`: (K, 3), see `fit_supports`.
     """
 
     depth_m: NDArray[np.float32]
@@ -29,6 +30,7 @@ class Scene:
     T_map_camera: NDArray[np.float64]
     points: NDArray[np.float32]
     supports: Supports
+    planes: NDArray[np.float64]
     labels: NDArray[np.int16]
     overs_m: NDArray[np.float32]
 
@@ -43,15 +45,18 @@ class Scene:
         """Depths (N,) and points (N, 3), map frame, of pixels."""
         return _taken(u, v, self.depth_m, self.points)
 
+    def slope_under(self, support: int) -> tuple[float, float, float]:
+        """What a support's fitted plane rises above its height per metre of x, of y, and at all."""
+        a, b, c = (float(p) for p in self.planes[support])
+        x, y = (float(p) for p in self.supports.origin_xy)
+        return a, b, c - a * x - b * y - float(self.supports.heights_m[support])
+
     @classmethod
-    def of(
-        cls, view: View, earlier: Sequence[Detection], settings: ContainerSettings
-    ) -> Scene | None:
+    def of(cls, view: View, earlier: Sequence[Detection], settings: ThingSettings) -> Scene | None:
         """The labelled view, or None where it has no depth."""
         if view.depth_m is None or view.camera is None:
             return None
-        c, T = view.camera, view.T_map_camera
-        intrinsics = np.array([c.fx, c.fy, c.cx, c.cy])
+        intrinsics, T = intrinsics_of(view), view.T_map_camera
         points = map_points(view.depth_m, intrinsics, T)
         supports = Supports.of(earlier)
         grid = (supports.raster, supports.origin_xy)
@@ -60,7 +65,7 @@ class Scene:
         labels, overs = label_things(
             view.depth_m, points, planes, supports.large, *grid, slope, *settings.above_m
         )
-        return cls(view.depth_m, intrinsics, T, points, supports, labels, overs)
+        return cls(view.depth_m, intrinsics, T, points, supports, planes, labels, overs)
 
 
 @kernel
@@ -76,12 +81,3 @@ def _taken(
         for k in range(3):
             xyz[n, k] = points[v[n], u[n], k]
     return depths, xyz
-
-
-def height_per_depth(
-    intrinsics: NDArray[np.float64], T_map_camera: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Coefficients (3,) of (u, v, 1) that give a pixel's change of height per metre of depth."""
-    fx, fy, cx, cy = intrinsics
-    a, b, c = T_map_camera[2, :3]
-    return np.array([a / fx, b / fy, c - a * cx / fx - b * cy / fy])

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection
+from afkb_mapping.bodies import supports_among
 from afkb_mapping.from_above import hull_candidates
 from afkb_mapping.kernels import kernel
 
 RASTER_M = 0.02
 HULL_MARGIN_CELLS = 1
 LARGE_SUPPORT_M2 = 0.12
-MAX_SUPPORTS = 62
 WALL_BIT = np.uint64(63)
 WALL_HEIGHT_M, WALL_LENGTH_M = 1.0, 1.0
 WALL_RMS_M = 0.05
@@ -39,15 +39,7 @@ class Supports:
     @classmethod
     def of(cls, earlier: Sequence[Detection]) -> Supports:
         """The supports among a view's detections, the floor left out."""
-        chosen = [
-            d
-            for d in earlier
-            if d.affords("SupportAbility", 0.3)
-            and not d.measures.get("is_floor")
-            and len(d.footprint_xy) >= 3
-        ]
-        chosen.sort(key=lambda d: (-d.n_pixels, tuple(d.position_xyz)))
-        chosen = sorted(chosen[:MAX_SUPPORTS], key=lambda d: -float(d.position_xyz[2]))
+        chosen = supports_among(earlier)
         heights = np.array([float(d.position_xyz[2]) for d in chosen])
         areas = np.array([d.measures.get("area", 0.0) for d in chosen])
         raster, origin = _raster(chosen, earlier)

@@ -3,51 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb_containers.scene import Scene
-from afkb_containers.settings import ContainerSettings
-from afkb_containers.stand import Stand
+from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.from_above import hull_candidates
 from afkb_mapping.grid_components import AREA, components
-from afkb_mapping.image_regions import Region, order_by_label, pixels_by_label
+from afkb_mapping.image_regions import order_by_label, pixels_by_label
 from afkb_mapping.kernels import kernel
-from afkb_mapping.order_statistics import percentile
-from afkb_mapping.sensor_noise import depth_sigma
+from afkb_things.scene import Scene
+from afkb_things.settings import ThingSettings
 
 MAX_GRID_CELLS = 4_000_000
 Box = tuple[int, int, int, int]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Cluster(Region):
-    """Pixels of one thing, what it stands on, and how high that is (m); None if it isn't seen."""
-
-    stand: Stand
-    support_height_m: float | None
-
-    @property
-    def lowest_m(self) -> float:
-        """Height of the lowest part in sight, strays left out, m."""
-        return percentile(self.points[:, 2], 2.0)
-
-    @property
-    def sigma_m(self) -> float:
-        """Standard deviation of its depth, m."""
-        return depth_sigma(percentile(self.depth_m, 50.0))
 
 
 def clusters_from_above(
     u: NDArray[np.int32],
     v: NDArray[np.int32],
     scene: Scene,
-    support_height_m: float,
-    settings: ContainerSettings,
-) -> Iterator[Cluster]:
+    support: int,
+    settings: ThingSettings,
+) -> Iterator[Body]:
     """Split pixels where, seen from above, nothing tall lies between them.
 
     A mug's far inner wall is separated from its front by a step in depth, but not from above:
@@ -56,8 +35,9 @@ def clusters_from_above(
     those over the support, so that a tilt of the view doesn't reach them.
     """
     least_tall = settings.min_pixels // 2
+    height_m, slope = float(scene.supports.heights_m[support]), scene.slope_under(support)
     depths, xyz, tall, ij, count, (i0, j0, i1, j1) = _over_support(
-        u, v, scene.depth_m, scene.points, scene.overs_m, support_height_m,
+        u, v, scene.depth_m, scene.points, scene.overs_m, height_m,
         settings.core_m, settings.cell_m,
     )  # fmt: skip
     if count < least_tall or (i1 - i0 + 5) * (j1 - j0 + 5) > MAX_GRID_CELLS:
@@ -67,7 +47,7 @@ def clusters_from_above(
     order, starts = order_by_label(_name_each(ij, names), enough)
     for k in np.flatnonzero(np.diff(starts) >= settings.min_pixels):
         own = _taken(order[starts[k] : starts[k + 1]], u, v, depths, xyz)
-        yield Cluster(*own, scene.depth_m.shape, Stand.ON_SUPPORT, support_height_m)
+        yield Body(*own, scene.depth_m.shape, Stand.ON_SUPPORT, height_m, slope)
 
 
 @kernel

@@ -1,0 +1,91 @@
+"""A body that stands somewhere, as its pixels; how it travels in a `Detection` and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from afkb.flow import Detection, View
+from afkb_mapping.depth_points import points_of_pixels
+from afkb_mapping.image_regions import Region
+from afkb_mapping.order_statistics import percentile
+from afkb_mapping.sensor_noise import depth_sigma
+
+LEAST_SUPPORT = 0.3
+MOST_SUPPORTS = 62
+
+
+class Stand(IntEnum):
+    """What a body stands on: a support in sight, one that is hidden, or the floor.
+
+    As a number it is a detection's measure `stand`.
+    """
+
+    ON_SUPPORT = 0
+    HIDDEN = 1
+    ON_FLOOR = 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Body(Region):
+    """Pixels of one body, what it stands on, and how high that is (m); None if it isn't seen.
+
+    Heights of points are those over the support as it is seen, so that a tilt of the view
+    doesn't reach them; `slope` (3,) is what was taken off: per metre of x, of y, and at all.
+    """
+
+    stand: Stand
+    support_height_m: float | None
+    slope: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def lowest_m(self) -> float:
+        """Height of the lowest part in sight, strays left out, m."""
+        return percentile(self.points[:, 2], 2.0)
+
+    @property
+    def base_m(self) -> float:
+        """Height of what it stands on, or where that is hidden of the lowest part in sight, m."""
+        return self.lowest_m if self.support_height_m is None else self.support_height_m
+
+    @property
+    def sigma_m(self) -> float:
+        """Standard deviation of its depth, m."""
+        return depth_sigma(percentile(self.depth_m, 50.0))
+
+
+def bodies_among(earlier: Sequence[Detection], view: View) -> Iterator[tuple[int, Body]]:
+    """The bodies that an earlier detector cut out of this view, each with its index."""
+    for index, detection in enumerate(earlier):
+        if detection.pixels is not None and "stand" in detection.measures:
+            yield index, _body_of(detection, view)
+
+
+def _body_of(detection: Detection, view: View) -> Body:
+    assert detection.pixels is not None and view.depth_m is not None
+    v, u = np.divmod(detection.pixels, np.int32(view.depth_m.shape[1]))
+    depths, points = points_of_pixels(u, v, view)
+    m = detection.measures
+    slope = (m.get("slope_x", 0.0), m.get("slope_y", 0.0), m.get("slope_offset", 0.0))
+    points[:, 2] -= slope[0] * points[:, 0] + slope[1] * points[:, 1] + slope[2]
+    height = m.get("support_height")
+    return Body(u, v, depths, points, view.depth_m.shape, Stand(int(m["stand"])), height, slope)
+
+
+def supports_among(earlier: Sequence[Detection]) -> list[Detection]:
+    """The supports among a view's detections, highest first; the floor and the smallest left out.
+
+    No more than have a bit each in a 64 bit raster that keeps some for other use.
+    """
+    chosen = [
+        d
+        for d in earlier
+        if d.affords("SupportAbility", LEAST_SUPPORT)
+        and not d.measures.get("is_floor")
+        and len(d.footprint_xy) >= 3
+    ]
+    chosen.sort(key=lambda d: (-d.n_pixels, tuple(d.position_xyz)))
+    return sorted(chosen[:MOST_SUPPORTS], key=lambda d: -float(d.position_xyz[2]))

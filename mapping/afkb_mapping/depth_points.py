@@ -1,0 +1,81 @@
+"""Points of a depth image in the map frame."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import View
+from afkb_mapping.kernels import kernel
+
+
+def intrinsics_of(view: View) -> NDArray[np.float64]:
+    """fx, fy, cx, cy of a view that has a camera, pixels."""
+    assert view.camera is not None
+    c = view.camera
+    return np.array([c.fx, c.fy, c.cx, c.cy])
+
+
+def points_of_pixels(
+    u: NDArray[np.int32], v: NDArray[np.int32], view: View
+) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+    """Depths (N,) and points (N, 3), map frame, of some pixels of a view."""
+    assert view.depth_m is not None
+    return _points_of_pixels(u, v, view.depth_m, intrinsics_of(view), view.T_map_camera)
+
+
+@kernel
+def _points_of_pixels(
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
+    depth_m: NDArray[np.float32],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
+) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+    fx, fy, cx, cy = intrinsics
+    T = T_map_camera
+    depths, points = np.empty(len(u), np.float32), np.empty((len(u), 3))
+    for n in range(len(u)):
+        z = depth_m[v[n], u[n]]
+        x, y = (u[n] - cx) / fx, (v[n] - cy) / fy
+        depths[n] = z
+        for k in range(3):
+            points[n, k] = (T[k, 0] * x + T[k, 1] * y + T[k, 2]) * z + T[k, 3]
+    return depths, points
+
+
+@kernel
+def map_points(
+    depth_m: NDArray[np.float32],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
+) -> NDArray[np.float32]:
+    """Points of a depth image in the map frame: (H, W, 3) float32; zero where nothing returned."""
+    fx, fy, cx, cy = intrinsics
+    T = T_map_camera
+    height, width = depth_m.shape
+    along_row = np.empty((width, 3))
+    for u in range(width):
+        for k in range(3):
+            along_row[u, k] = T[k, 0] * ((u - cx) / fx)
+    out = np.empty((height, width, 3), np.float32)
+    for v in range(height):
+        y = (v - cy) / fy
+        ax, ay, az = T[0, 1] * y, T[1, 1] * y, T[2, 1] * y
+        for u in range(width):
+            z = depth_m[v, u]
+            seen = z > 0
+            x, y_, h = along_row[u, 0] + ax, along_row[u, 1] + ay, along_row[u, 2] + az
+            out[v, u, 0] = (x + T[0, 2]) * z + T[0, 3] if seen else 0.0
+            out[v, u, 1] = (y_ + T[1, 2]) * z + T[1, 3] if seen else 0.0
+            out[v, u, 2] = (h + T[2, 2]) * z + T[2, 3] if seen else 0.0
+    return out
+
+
+def height_per_depth(
+    intrinsics: NDArray[np.float64], T_map_camera: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Coefficients (3,) of (u, v, 1) that give a pixel's change of height per metre of depth."""
+    fx, fy, cx, cy = intrinsics
+    a, b, c = T_map_camera[2, :3]
+    return np.array([a / fx, b / fy, c - a * cx / fx - b * cy / fy])

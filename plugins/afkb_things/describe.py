@@ -1,0 +1,58 @@
+"""The `Detection` of a body."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from afkb.flow import Detection
+from afkb_mapping.bodies import Body
+from afkb_mapping.from_above import box_around, on_grid, sides_from_above
+from afkb_mapping.order_statistics import percentile
+
+ATTACHED = (0.08, 0.22)
+"""Share of a body's outline beyond which its surface goes on: below the first it stands free,
+above the second it is part of something larger."""
+CUT = 0.5
+"""How often a body that the image edge cuts is one body as it is seen."""
+
+
+def body_detection(body: Body, attached: float, detector: str) -> Detection | None:
+    """A body from its base up to its top, or None where it is part of something larger."""
+    free = min(1.0, (ATTACHED[1] - attached) / (ATTACHED[1] - ATTACHED[0]))
+    if free <= 0:
+        return None
+    base, top = body.base_m, percentile(body.points[:, 2], 98.0)
+    box = box_around(on_grid(body.points, 0.005), top, 0.0, max(top - base, 0.0))
+    spread = body.sigma_m**2 + 1e-4
+    return Detection(
+        detector=detector,
+        affordances={"DisposeAbility": free * (CUT if body.cut_by_image else 1.0)},
+        box=box,
+        position_xyz=np.array(box.center_xyz),
+        covariance_xyz=np.diag([spread, spread, 0.25 * spread]),
+        footprint_xy=on_grid(body.points, 0.02),
+        n_pixels=len(body.u),
+        range_m=percentile(body.depth_m, 1.0),
+        image_box=body.image_box,
+        cut_by_image=body.cut_by_image,
+        measures=_measures(body, base, top, attached),
+        pixels=(body.v * np.int32(body.shape[1]) + body.u).astype(np.int32),
+    )
+
+
+def _measures(body: Body, base_m: float, top_m: float, attached: float) -> dict[str, float]:
+    """Heights, sides and surroundings; no `support_height` where that isn't seen."""
+    length, width = sides_from_above(body.points)
+    measures = {
+        "stand": float(body.stand),
+        "bottom": base_m,
+        "height": top_m - base_m,
+        "length": length,
+        "width": width,
+        "attached": attached,
+    }
+    if body.support_height_m is not None:
+        measures["support_height"] = body.support_height_m
+    if any(body.slope):
+        measures |= dict(zip(("slope_x", "slope_y", "slope_offset"), body.slope, strict=True))
+    return measures
