@@ -73,6 +73,8 @@ class Detection:
     - `border`: shares of the outline that are `real`, `occluded` by something nearer, `cut` by the
       image edge, or `missing` (the sensor returns nothing beyond); they sum to 1, or it is empty.
     - `primitive`: the simple shape of a body, or None.
+    - `parts`: the detections that this one joins, in the order they were made; empty for one that
+      a detector made.
     """
 
     detector: str
@@ -93,6 +95,7 @@ class Detection:
     rings_xy: tuple[NDArray[np.float64], ...] = ()
     border: Mapping[str, float] = field(default_factory=dict)
     primitive: Primitive | None = None
+    parts: tuple[Detection, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.affordances:
@@ -102,6 +105,11 @@ class Detection:
                 raise ValueError(f"{self.detector}: {name} has probability {p}, not in 0..1")
         if self.position_xyz.shape != (3,) or not np.isfinite(self.position_xyz).all():
             raise ValueError(f"{self.detector}: position {self.position_xyz} is not a finite (3,)")
+
+    @property
+    def detectors(self) -> tuple[str, ...]:
+        """Names of all detectors that spoke of it, the first to do so first."""
+        return tuple(dict.fromkeys(d.detector for d in self.parts)) or (self.detector,)
 
     def affords(self, feature: str, at_least: float = 0.5) -> bool:
         """Whether it affords the feature with at least that probability."""

@@ -137,7 +137,8 @@ class Association:
 
 def _is_surface(detection: Detection) -> bool:
     """Whether supporting is what it is detected by; a box affords it too, but is a thing."""
-    best = max(detection.affordances, key=lambda name: detection.affordances[name])
+    first = (detection.parts or (detection,))[0]
+    best = max(first.affordances, key=lambda name: first.affordances[name])
     return best == "SupportAbility"
 
 

@@ -1,4 +1,4 @@
-"""The commands that need geometry: `map` and `demo`."""
+"""The commands that make maps: `map` and `demo`."""
 
 from __future__ import annotations
 
@@ -9,19 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from afkb.cli.state import state_of
-from afkb.errors import SourceError
+from afkb_mapping.source_options import options_of
 
 if TYPE_CHECKING:
     from afkb_mapping.run import RunResult
     from afkb_mapping.run_record import Settings
 
 DEMO_WORLD = "world:paper_home"
-
-
-def add_commands(cli: typer.Typer) -> None:
-    """Register the commands on the command line."""
-    cli.command(name="map")(map_)
-    cli.command()(demo)
 
 
 def map_(
@@ -70,7 +64,7 @@ def map_(
         start=start,
         stop=stop,
         stride=stride,
-        options=_options(option or ()),
+        options=options_of(option or ()),
     )
     result = _run(host, settings)
     if json_:
@@ -115,16 +109,6 @@ def _run(host: object, settings: Settings) -> RunResult:
     assert isinstance(host, PluginHost)
     with shown_progress() as progress:
         return make_map(host, settings, progress)
-
-
-def _options(pairs: list[str] | tuple[str, ...]) -> dict[str, str]:
-    options = {}
-    for pair in pairs:
-        key, sign, value = pair.partition("=")
-        if not sign or not key:
-            raise SourceError(f"--option {pair}: write it as key=value")
-        options[key] = value
-    return options
 
 
 def _print_summary(settings: Settings, result: RunResult) -> None:

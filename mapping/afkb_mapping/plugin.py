@@ -38,7 +38,10 @@ def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
 
 @hookimpl
 def afkb_commands(cli: typer.Typer, knowledge_base: AfNet) -> None:
-    """Add `map` and `demo`."""
-    from afkb_mapping.commands import add_commands
+    """Add `map`, `demo` and `detect`."""
+    from afkb_mapping.commands import demo, map_
+    from afkb_mapping.detect_command import detect
 
-    add_commands(cli)
+    cli.command(name="map")(map_)
+    cli.command()(demo)
+    cli.command()(detect)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import io
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,12 +12,12 @@ import numpy as np
 from afkb.errors import BadFrame, PluginError, SourceError
 from afkb.flow import Detection, Hypothesis, SkippedFrame, TopologicalMap, View
 from afkb.plugins.host import PluginHost
-from afkb.plugins.protocols import Detector, Mapper, Predictor
+from afkb.plugins.protocols import Mapper, Predictor
 from afkb.store import check_out, write_map
 from afkb_mapping.interruption import Interruption
 from afkb_mapping.levelling import Level, level
-from afkb_mapping.pose_gate import PoseGate
-from afkb_mapping.registration import ScanRegistration
+from afkb_mapping.perception import Perception, blamed
+from afkb_mapping.placed_views import placed_views, skipped
 from afkb_mapping.run_record import Settings, Stages, run_record
 from afkb_mapping.selection import Selection
 
@@ -60,12 +59,13 @@ def make_map(
     stages = Stages()
     with Interruption() as interruption:
         with stages.timed("start"):
-            selection = Selection(host.open_source(settings.uri, settings.options), settings)
+            source = host.open_source(settings.uri, settings.options)
+            selection = Selection(source, settings.frames)
             crew = _Crew.of(host, settings, stages)
         with stages.timed("level"):
             levelled = level(selection.sample(), selection.gravity_aligned)
-        way = _Way(crew, ScanRegistration(levelled.T_map_source), stages)
-        for done in way.along(selection):
+        way = _Way(crew)
+        for done in way.along(placed_views(selection, levelled.T_map_source, stages)):
             progress(Progress(done, len(selection), way.frames_per_second))
             if interruption.signal is not None:
                 break
@@ -97,7 +97,7 @@ def make_map(
 class _Crew:
     """The plugins that a run uses."""
 
-    detectors: Sequence[Detector]
+    perception: Perception
     predictors: Sequence[Predictor]
     mapper: Mapper
     stages: Stages
@@ -105,7 +105,7 @@ class _Crew:
     @classmethod
     def of(cls, host: PluginHost, settings: Settings, stages: Stages) -> _Crew:
         return cls(
-            host.detectors(settings.detectors),
+            Perception(host.detectors(settings.detectors), stages),
             host.predictors(settings.predictors),
             host.mapper_factory(settings.mapper)(settings.rule),
             stages,
@@ -117,29 +117,18 @@ class _Crew:
         Raises `BadFrame` where a detector or predictor fails on it, before the map has changed.
         """
         try:
-            detections = self._detect(view)
+            detections = self.perception.detections(view)
             hypotheses = self._predict(detections)
         except PluginError as error:
             raise BadFrame(str(error)) from error
-        with self.stages.timed("map"), _blamed("mapper", type(self.mapper).__name__):
+        with self.stages.timed("map"), blamed("mapper", type(self.mapper).__name__):
             self.mapper.add(view, detections, hypotheses)
-
-    def _detect(self, view: View) -> list[Detection]:
-        """All detections of a view, coarse before fine."""
-        found: list[Detection] = []
-        for stage in sorted({d.stage for d in self.detectors}):
-            earlier = tuple(found)
-            for detector in (d for d in self.detectors if d.stage == stage):
-                name = detector.name
-                with self.stages.timed(f"detect {name}"), _blamed("detector", name):
-                    found += detector.detect(view, earlier)
-        return found
 
     def _predict(self, detections: Sequence[Detection]) -> list[Hypothesis]:
         hypotheses: list[Hypothesis] = []
         for predictor in self.predictors:
             name = predictor.name
-            with self.stages.timed(f"predict {name}"), _blamed("predictor", name):
+            with self.stages.timed(f"predict {name}"), blamed("predictor", name):
                 hypotheses += predictor.predict(detections)
         return hypotheses
 
@@ -149,9 +138,6 @@ class _Way:
     """The way through a recording: frame by frame, counting what was used and what was not."""
 
     crew: _Crew
-    registration: ScanRegistration
-    stages: Stages
-    gate: PoseGate = field(default_factory=PoseGate)
     used: int = 0
     with_depth: int = 0
     skipped: list[SkippedFrame] = field(default_factory=list)
@@ -162,48 +148,23 @@ class _Way:
         """Frames used per second of the way so far."""
         return self.used / max(time.perf_counter() - self.begun, 1e-9)
 
-    def along(self, selection: Selection) -> Iterator[int]:
+    def along(self, frames: Iterable[View | SkippedFrame]) -> Iterator[int]:
         """Take in frame after frame; yields how many are done."""
-        for done, frame in enumerate(self._read(selection.frames()), start=1):
+        for done, frame in enumerate(frames, start=1):
             if isinstance(frame, SkippedFrame):
                 self.skipped.append(frame)
             else:
                 self._take_in(frame)
             yield done
 
-    def _read(self, frames: Iterator[View | SkippedFrame]) -> Iterator[View | SkippedFrame]:
-        while True:
-            with self.stages.timed("read"):
-                frame = next(frames, None)
-            if frame is None:
-                return
-            yield frame
-
-    def _take_in(self, frame: View) -> None:
+    def _take_in(self, view: View) -> None:
         try:
-            self.gate.check(frame)
-            with self.stages.timed("register"):
-                view = replace(frame, T_map_base=self.registration.place(frame).T_map_base)
             self.crew.take_in(view)
         except BadFrame as error:
-            self.skipped.append(SkippedFrame(frame.index, f"frame {frame.index}", str(error)))
+            self.skipped.append(skipped(view, error))
             return
         self.used += 1
         self.with_depth += view.depth_m is not None
-
-
-@contextmanager
-def _blamed(what: str, name: str) -> Iterator[None]:
-    """Say whose fault it is when a plugin fails, whatever it fails with."""
-    try:
-        yield
-    except BadFrame:
-        raise
-    except Exception as error:
-        raise PluginError(
-            f"{what} {name!r} failed with {type(error).__name__}: {error}; "
-            "mend it, or leave it out by naming the others"
-        ) from error
 
 
 def _finished(mapper: Mapper, levelled: Level, way: _Way) -> TopologicalMap:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from afkb import __version__
 from afkb.flow import SkippedFrame, TopologicalMap
+from afkb_mapping.selection import FrameRange
 
 RECORDED_PACKAGES = ("numpy", "numba", "open3d-cpu", "opencv-python-headless", "pgmpy", "rosbags")
 MAX_LISTED_SKIPS = 20
@@ -34,6 +35,11 @@ class Settings:
     stop: int | None = None
     stride: int = 1
     options: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def frames(self) -> FrameRange:
+        """Which frames of the recording are used."""
+        return FrameRange(self.start, self.stop, self.stride)
 
 
 @dataclass(slots=True)

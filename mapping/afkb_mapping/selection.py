@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from afkb.errors import SourceError
 from afkb.flow import SkippedFrame, View
 from afkb.plugins.protocols import Source
 from afkb_mapping.levelling import SAMPLED_VIEWS, SAMPLED_VIEWS_UPRIGHT
-from afkb_mapping.run_record import Settings
+
+
+@dataclass(frozen=True, slots=True)
+class FrameRange:
+    """Frames `start, start + stride, … < stop`; a stop of None is the recording's end."""
+
+    start: int = 0
+    stop: int | None = None
+    stride: int = 1
 
 
 class Selection:
-    """Frames `start, start + stride, … < stop` of a source."""
+    """The frames of a source that are in a range."""
 
-    def __init__(self, source: Source, settings: Settings) -> None:
+    def __init__(self, source: Source, frames: FrameRange) -> None:
         self._source = source
-        self._range = range(
-            *slice(settings.start, settings.stop, settings.stride).indices(len(source))
-        )
+        self._range = range(*slice(frames.start, frames.stop, frames.stride).indices(len(source)))
 
     def __len__(self) -> int:
         return len(self._range)

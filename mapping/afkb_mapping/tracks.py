@@ -134,7 +134,7 @@ class ObservedTrack:
         self.farthest_m = max(self.farthest_m, detection.range_m)
         self.first_seen, self.last_seen = min(self.first_seen, stamp), max(self.last_seen, stamp)
         self.last_view = view_index
-        self.detectors[detection.detector] = None
+        self.detectors.update(dict.fromkeys(detection.detectors))
         self.pixels_of_known_extent += detection.n_pixels * detection.extent_known
         if len(self.evidence) < KEPT_EVIDENCE:
             self.evidence.append(_evidence(detection, view_index))
@@ -177,7 +177,7 @@ def _evidence(detection: Detection, view_index: int) -> str:
     if detection.image_box is not None:
         u0, v0, u1, v1 = detection.image_box
         where = f", image {u0},{v0} to {u1},{v1}"
-    return f"{detection.detector}: view {view_index}{where}, {detection.n_pixels} px"
+    return f"{' and '.join(detection.detectors)}: view {view_index}{where}, {detection.n_pixels} px"
 
 
 @dataclass(slots=True, eq=False)
