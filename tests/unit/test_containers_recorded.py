@@ -20,7 +20,7 @@ def scored(data_dir: Path) -> dict[str, Any]:
     seen = Home(home, PluginHost(), 6, ("surfaces", "things", "containers"))
     return {
         "supports": surfaces.score(seen.seen, seen.truth),
-        "containers": containers.score(seen.seen, seen.truth),
+        "containers": containers.scored(seen),
     }
 
 
@@ -33,6 +33,7 @@ def test_supports_are_found_at_their_height_and_nowhere_else(scored: dict[str, A
 
 
 def test_what_is_taken_for_a_container_is_one(scored: dict[str, Any]) -> None:
-    containers = scored["containers"]
-    assert containers["claims"] >= 8
-    assert containers["precision"] >= 0.9
+    hollow, closed = scored["containers"]["hollow"], scored["containers"]["closed"]
+    assert hollow["view_claims"] + closed["view_claims"] >= 8
+    assert hollow["view_precision"] >= 0.9
+    assert closed["view_precision"] >= 0.75
