@@ -44,7 +44,7 @@ def table(result: dict[str, Any]) -> Iterator[str]:
             yield f"{name}: {_line(kind, home[kind])}"
             for r in home[kind]["things"]:
                 yield (
-                    f"    {r['name']:26} {r['most_pixels']:6d} px, claimed in {r['claimed']} views: "
+                    f"    {r['name']:26} {r['most_pixels']:6d} px, claims {r['claimed']}: "
                     f"{r['claimed_well']} of {r['seen_well']} that see it well; closed in "
                     f"{r['as_closed']}, top {r['top_error']}{'' if r['found'] else '  MISSED'}"
                 )
