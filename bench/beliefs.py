@@ -88,14 +88,14 @@ def thing_of(node: dict, truth: dict) -> dict | None:
             low - WITHIN_M <= node[axis] <= high + WITHIN_M
             for axis, low, high in zip("xyz", thing["min"], thing["max"], strict=True)
         )
-        board = "SupportAbility" in node["affords"] and not _word(thing).startswith("shelf")
+        board = "SupportAbility" in node["affords"] and not word_of(thing).startswith("shelf")
         if inside and not (board and abs(thing["top_height"] - node["z"]) > TOP_WITHIN_M):
             near.append(thing)
-    near = [t for t in near if _word(t) in MEANT]
+    near = [t for t in near if word_of(t) in MEANT]
     return min(near, key=_volume, default=None)
 
 
-def _word(thing: dict) -> str:
+def word_of(thing: dict) -> str:
     return re.sub(r"^\d+(-\w)?_", "", thing["category"])
 
 
@@ -110,7 +110,7 @@ def things(nodes: list[dict], truth: dict, kb: AfNet) -> dict:
         thing = thing_of(node, truth)
         if thing is None or ("SupportAbility" in node["affords"] and node["z"] < 0.08):
             continue
-        word, right = _word(thing), meant(_word(thing), kb)
+        word, right = word_of(thing), meant(word_of(thing), kb)
         named = sorted(node["category"], key=lambda name: -node["category"][name])
         counts[word] += 1
         first[word] += named[0] in right

@@ -12,6 +12,7 @@ from typing import Any
 
 from afkb.errors import AfkbError
 from afkb.plugins.host import PluginHost
+from bench.detectors.kitchen import Kitchen
 from bench.detectors.seen import Run, placed_views, run_detectors
 
 ROOT = Path(__file__).parents[2]
@@ -88,6 +89,11 @@ class Asked:
     def homes(self) -> list[Home]:
         """The homes; what was seen in them is kept for the parts that follow."""
         return homes_in(self.homes_folder, self.host, self.stride, self.detectors)
+
+    @cached_property
+    def kitchen(self) -> Kitchen:
+        """The real kitchen; what was seen in it is kept for the parts that follow."""
+        return Kitchen(self.redkitchen, self.host, self.stride, tuple(self.detectors))
 
     def check(self, needs: Sequence[str]) -> None:
         """Raises `NoData` where a folder that a part needs is missing."""

@@ -51,7 +51,7 @@ def score(run: Run, truth: dict[str, Any]) -> dict[str, Any]:
         row, heights = _support_row(thing, claims)
         rows.append(row)
         errors += heights
-    wrong = [described(i, d) for i, d in claims if not _in_some_thing(d, things)]
+    wrong = [described(i, d) for i, d in claims if not in_some_thing(d, things)]
     found = [r for r in rows if r["found"]]
     return {
         "seen_well": len(rows),
@@ -96,7 +96,7 @@ def _support_row(
     return row, heights
 
 
-def _in_some_thing(d: Detection, things: list[dict[str, Any]]) -> bool:
+def in_some_thing(d: Detection, things: list[dict[str, Any]]) -> bool:
     height = d.measures["height"]
     for thing in things:
         if not thing["min"][2] - MARGIN_M <= height <= thing["max"][2] + HEIGHT_TOLERANCE_M:
