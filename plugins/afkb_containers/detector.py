@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
-from afkb_containers.concavity import find_opening
 from afkb_containers.judge import LEAST_CLAIM, container_detection, judge
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import solid_of
 from afkb_containers.sunk import sunk_containers
 from afkb_mapping.bodies import Body, Stand, bodies_among
+from afkb_mapping.openings import find_opening
 from afkb_mapping.trapezoids import membership
 
 ATTACHED = (0.08, 0.22)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from afkb.flow import Detection
-from afkb_containers.concavity import Opening
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import Solid
 from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.from_above import box_around, on_grid
+from afkb_mapping.openings import Opening
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.trapezoids import membership
 

@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from afkb_containers.concavity import _border_lines, _within
 from afkb_containers.solid import image_solidity, thickness_and_lean
 from afkb_mapping.depth_points import map_points
 from afkb_mapping.from_above import sides_from_above
+from afkb_mapping.openings import _border_lines, _within
 from afkb_things.above import fit_supports
 from afkb_things.supports import RASTER_M
 
