@@ -82,6 +82,16 @@ class Entity:
     polygon_xy: NDArray[np.float64] | None = None
     evidence: tuple[str, ...] = ()
 
+    def affords(self, feature: str, at_least: float = 0.5) -> bool:
+        """Whether it affords the feature with at least that probability."""
+        return self.affordances.get(feature, 0.0) >= at_least
+
+    @property
+    def top_m(self) -> float:
+        """Height of its upper side above the floor, m: of what supports, of its upper surface."""
+        z, height = self.position_xyz[2], self.size_xyz[2]
+        return z if self.affords("SupportAbility") else z + height / 2
+
 
 @dataclass(frozen=True, slots=True)
 class Bound:

@@ -18,6 +18,8 @@ CONVINCING = 0.4
 cue that a few of them took for something."""
 SUSTAINED = 0.8
 """A thing seen in one view only is kept if that view was this sure of it."""
+FAINT = 0.05
+"""What a thing affords less surely than this is not worth stating."""
 SMALLEST_SURFACE_M2 = 0.02
 SURFACE_THICKNESS_M = 0.02
 
@@ -66,8 +68,9 @@ def _observed(
     top = 0.0 if track.is_floor else track.top.value
     bottom = top - SURFACE_THICKNESS_M if track.is_surface else min(track.bottom.value, top)
     size = (*outline.size_xy, top - bottom)
-    z = top if track.is_surface else (top + bottom) / 2
-    affordances = track.affordances
+    affordances = {n: p for n, p in track.affordances.items() if p >= FAINT}
+    supports = track.is_surface or affordances.get("SupportAbility", 0.0) >= EXISTS_FROM
+    z = top if supports else (top + bottom) / 2
     belief, movability, weight = {"Floor": 1.0}, "Static", 1.0
     if not track.is_floor:
         belief = network.category_posterior(network.known(affordances), size, top)

@@ -144,10 +144,8 @@ def _rooms(
 
 
 def _evidence_of(entity: Entity, network: Network) -> tuple[str, ...]:
-    height = entity.position_xyz[2]
-    if "SupportAbility" not in entity.affordances:
-        height += entity.size_xyz[2] / 2
-    return network.evidence_of(network.known(entity.affordances), entity.size_xyz, height)
+    known = network.known(entity.affordances)
+    return network.evidence_of(known, entity.size_xyz, entity.top_m)
 
 
 def _with_things(grid: OccupancyGrid, entities: Sequence[Entity]) -> OccupancyGrid:
@@ -163,7 +161,4 @@ def _with_things(grid: OccupancyGrid, entities: Sequence[Entity]) -> OccupancyGr
 
 def _stands_in_the_way(entity: Entity) -> bool:
     """The floor and what lies flat on it do not; things on a support are within its outline."""
-    top = entity.position_xyz[2]
-    if "SupportAbility" not in entity.affordances:
-        top += entity.size_xyz[2] / 2
-    return top > STEP_M
+    return entity.top_m > STEP_M
