@@ -128,14 +128,19 @@ class ObjectNetwork:
         affordances: Mapping[str, float],
         size_xyz: tuple[float, float, float],
         top_height_m: float,
+        whole: bool = True,
     ) -> dict[str, float]:
-        """P(category | evidence) in closed form; equal to variable elimination (tested)."""
+        """P(category | evidence) in closed form; equal to variable elimination (tested).
+
+        What isn't seen `whole` is at least as long and wide as it looks.
+        """
         likelihoods, bands = self.observed(affordances, size_xyz, top_height_m)
         weights = self.prior.copy()
         for name, p in likelihoods.items():
             weights *= p * self.features[name] + (1.0 - p) * (1.0 - self.features[name])
         for name, band in bands.items():
-            weights *= self.measures[name][band]
+            larger = slice(band, None if name in (LENGTH, WIDTH) and not whole else band + 1)
+            weights *= self.measures[name][larger].sum(axis=0)
         total = float(weights.sum())
         if not total > 0:
             raise EvidenceError(
