@@ -6,7 +6,7 @@ import re
 
 from afkb.extensions.problems import Problems, nearest
 from afkb.extensions.sheet import Entry, Sheet
-from afkb.ontology.names import KINDS, RELATIONS, STATUSES
+from afkb.ontology.names import GROUNDED_BY, KINDS, RELATIONS, STATUSES, SUBJECTS
 
 _NAME = re.compile(r"[A-Z][A-Za-z0-9_]*")
 _MEASURE = re.compile(r"[a-z][A-Za-z0-9_]*")
@@ -16,8 +16,11 @@ _WORDS = {
     "moved": ("Fixed", "Rarely", "Often", "Carried", "RarelyMoved", "OftenMoved"),
     "stands_on": ("Floor", "Support", "Wall", "Structure", "Anything"),
     "relation": RELATIONS,
+    "measure_of": SUBJECTS,
+    "grounded_on": SUBJECTS,
+    "grounded_by": GROUNDED_BY,
 }
-"""Columns that hold one of a few words."""
+"""Columns that hold one of a few words, or several of them."""
 _NEEDED = {
     "features": ("kind",),
     "categories": ("broader", "length", "width", "height"),
@@ -26,6 +29,7 @@ _NEEDED = {
     "co_occurrences": ("feature", "strength", "predicted_scale"),
     "evidence_classes": ("feature",),
     "room_evidence": ("expected_count",),
+    "measures": ("measure_name", "measure_of"),
     "trapezoids": ("z1", "n1", "n2", "z2"),
     "parameters": ("value",),
 }
@@ -83,14 +87,14 @@ def _check_filled(entry: Entry, column: str, problems: Problems) -> None:
 def _check_words(entry: Entry, problems: Problems) -> None:
     words = _WORDS | ({"kind": tuple(KINDS)} if entry.table.name == "features" else {})
     for column, known in words.items():
-        cell = entry.row.get(column)
-        if cell and cell not in known:
-            mend = nearest(cell, known)
-            problems.add(
-                entry.place(column),
-                f"{column} {cell!r} is none of: {', '.join(known[:5])}"
-                + (f"; {mend}" if mend.startswith("did") else "; write one of them"),
-            )
+        for cell in entry.row.several(column):
+            if cell not in known:
+                mend = nearest(cell, known)
+                problems.add(
+                    entry.place(column),
+                    f"{column} {cell!r} is none of: {', '.join(known[:5])}"
+                    + (f"; {mend}" if mend.startswith("did") else "; write one of them"),
+                )
 
 
 def _camel(name: str) -> str:

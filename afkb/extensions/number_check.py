@@ -8,7 +8,7 @@ from afkb.extensions.problems import Problems
 from afkb.extensions.statements import Statements
 from afkb.ontology.names import fragment
 
-_PROBABILITIES = ("strength", "matchingWeight", "rate")
+_PROBABILITIES = ("strength", "matchingWeight", "rate", "groundingStrength")
 _POSITIVE = ("expectedNumber", "expectedCount", "dispersion")
 _NOT_NEGATIVE = ("distanceMean", "distanceSd", "sizeXTypical", "sizeYTypical")
 _NUMBERS = ("value", "z1", "n1", "n2", "z2", "evidenceBottomMin")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from afkb.extensions.change_check import check_changes
+from afkb.extensions.measure_check import check_measures
 from afkb.extensions.number_check import check_numbers
 from afkb.extensions.problems import Problems, nearest
 from afkb.extensions.statements import Statements, terms_of
@@ -57,6 +58,7 @@ def check_statements(statements: Statements, earlier: Terms, problems: Problems)
     for term in own:
         known.add(term)
     known.scales += of_file.scales
+    known.measures |= of_file.measures
     twice = _check_names(own, earlier, statements, problems)
     _check_keys(statements, known, problems)
     check_changes(statements, earlier, problems)
@@ -66,6 +68,7 @@ def check_statements(statements: Statements, earlier: Terms, problems: Problems)
     for subject in statements.values:
         _check_references(subject, statements, known, twice, problems)
     check_numbers(statements, problems)
+    check_measures(statements, known, problems)
     _check_pairs(statements, problems)
     _check_cycles(own, known, statements, problems)
     return known

@@ -88,6 +88,9 @@ def terms_of(statements: Statements) -> Terms:
         if term.word == "scale":
             ends = [statements.one(term.iri, p) for p in ("extentMin", "extentMax")]
             terms.scales.append(scale_limits(term.name, *ends))
+        if term.word == "measure":
+            name = statements.one(term.iri, "measureName")
+            terms.measures[name] = tuple(statements.many(term.iri, "measureOf"))
     for key, subject in statements.keyed():
         terms.stated.setdefault(key, statements.place(subject))
     return terms

@@ -27,6 +27,7 @@ WORD_OF = {
     "RoomCategory": "room",
     "EvidenceClass": "evidence class",
     "AfbitRule": "rule",
+    "Measure": "measure",
     "Dual": "dual",
     "CoOccurrence": "co-occurrence",
     "NetworkParameter": "parameter",
@@ -37,7 +38,7 @@ _TABLES = {
     "scales": "scale", "shapes": "shape", "materials": "material", "traits": "trait",
     "parts": "part", "poses": "pose", "rooms": "room", "evidence_classes": "evidence class",
     "rules": "rule", "duals": "dual", "co_occurrences": "co-occurrence",
-    "parameters": "parameter",
+    "parameters": "parameter", "measures": "measure",
 }  # fmt: skip
 
 
@@ -68,11 +69,13 @@ class Terms:
     """Terms by what they are and by name, and the statements that have a key.
 
     `stated`: the keys of afbits, room evidence and trapezoids, with their places.
+    `measures`: name, as fuzzy ranges have it, to what has the measure.
     """
 
     by_word: dict[str, dict[str, Term]] = field(default_factory=dict)
     scales: list[ScaleLimits] = field(default_factory=list)
     stated: dict[tuple[str, ...], str] = field(default_factory=dict)
+    measures: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
     def add(self, term: Term) -> None:
         """Add a term; the first of a name is kept."""
@@ -104,7 +107,7 @@ class Terms:
     def copy(self) -> Terms:
         """Terms to which others can be added."""
         words = {word: dict(terms) for word, terms in self.by_word.items()}
-        return Terms(words, list(self.scales), dict(self.stated))
+        return Terms(words, list(self.scales), dict(self.stated), dict(self.measures))
 
 
 def bundled_terms(ontology: Path) -> Terms:
@@ -129,6 +132,8 @@ def _take_in(row: Row, word: str, terms: Terms) -> None:
     place = f"the bundled ontology ({row.place})"
     cells = {c: row.get(c) for c in ("broader", "scale", "kind")}
     terms.add(Term(row["name"], AFN + row["name"], word, place, **cells))
+    if word == "measure":
+        terms.measures[row["measure_name"]] = tuple(row.several("measure_of"))
     if word == "scale":
         limits = row.get("extent_min_m"), row.get("extent_max_m")
         terms.scales.append(scale_limits(row["name"], *limits))

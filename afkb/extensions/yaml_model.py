@@ -53,8 +53,14 @@ class Category(Entry):
     afbits: list[Text] = []
 
 
+Subject = Literal["body", "surface", "opening", "upright", "part", "gap"]
+
+
 class Feature(Entry):
-    """An affordance, and the fuzzy ranges of the measures by which a detector grounds it."""
+    """An affordance, and the fuzzy ranges of the measures by which a detector grounds it.
+
+    `grounded_on`: what affords it, if its measures fit; then the detector `grounded` reports it.
+    """
 
     kind: Literal["structural", "material", "grasp"]
     definition: Text
@@ -64,6 +70,20 @@ class Feature(Entry):
     broader: Word | None = None
     examples: list[Text] = []
     parameters: dict[Word, Four] = {}
+    grounded_on: Subject | list[Subject] | None = None
+    grounded_by: Literal["detector", "measures", "weak measures", "nothing"] | None = None
+    grounding_strength: float | None = None
+    grounding_reason: Text | None = None
+
+
+class Measure(Entry):
+    """What a detector of one's own measures, for the fuzzy ranges of features."""
+
+    definition: Text
+    measure_name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
+    measure_of: Subject | list[Subject]
+    measured_in: Text | None = None
+    primitive: Text | None = None
 
 
 class _Relationship(Entry):
@@ -139,6 +159,7 @@ class Extension(_Strict):
     evidence_classes: dict[str, EvidenceClass] = {}
     rooms: dict[str, Room] = {}
     parameters: dict[str, Parameter] = {}
+    measures: dict[str, Measure] = {}
     groups: dict[str, Entry] = {}
     shapes: dict[str, Entry] = {}
     materials: dict[str, Entry] = {}
@@ -150,6 +171,7 @@ class Extension(_Strict):
 
 SECTIONS: dict[str, type[Entry]] = {
     "categories": Category,
+    "measures": Measure,
     "features": Feature,
     "duals": Dual,
     "co_occurrences": CoOccurrence,

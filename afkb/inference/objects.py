@@ -128,26 +128,32 @@ class ObjectNetwork:
         affordances: Mapping[str, float],
         size_xyz: tuple[float, float, float],
         top_height_m: float,
-        whole: bool = True,
     ) -> dict[str, float]:
-        """P(category | evidence) in closed form; equal to variable elimination (tested).
+        """P(category | evidence) in closed form; equal to variable elimination (tested)."""
+        shares = self.shares(affordances, size_xyz, top_height_m)
+        return dict(zip(self.categories, shares.tolist(), strict=True))
 
-        What isn't seen `whole` is at least as long and wide as it looks.
-        """
+    def shares(
+        self,
+        affordances: Mapping[str, float],
+        size_xyz: tuple[float, float, float],
+        top_height_m: float,
+    ) -> Array:
+        """`posterior` as an array (C,), in the order of `categories`."""
         likelihoods, bands = self.observed(affordances, size_xyz, top_height_m)
         weights = self.prior.copy()
         for name, p in likelihoods.items():
             weights *= p * self.features[name] + (1.0 - p) * (1.0 - self.features[name])
         for name, band in bands.items():
-            larger = slice(band, None if name in (LENGTH, WIDTH) and not whole else band + 1)
-            weights *= self.measures[name][larger].sum(axis=0)
+            weights *= self.measures[name][band]
         total = float(weights.sum())
         if not total > 0:
             raise EvidenceError(
                 f"no category can afford {dict(affordances)} at size {size_xyz} m, top at "
                 f"{top_height_m} m; check the strengths of 0 and 1 in the ontology's afbits"
             )
-        return dict(zip(self.categories, (weights / total).tolist(), strict=True))
+        shares: Array = weights / total
+        return shares
 
 
 def _features(kb: AfNet, prior: Array) -> dict[str, Array]:

@@ -19,6 +19,7 @@ from afkb.knowledge.model import (
     Dual,
     EvidenceClass,
     Feature,
+    Measure,
     RoomCategory,
     Scale,
 )
@@ -85,6 +86,11 @@ class AfNet:
     def features(self) -> Mapping[str, Feature]:
         """Affordance features by name."""
         return self._content.features
+
+    @property
+    def measures(self) -> Mapping[str, Measure]:
+        """What the groundings of features may measure, by the name that fuzzy ranges use."""
+        return {measure.measure_name: measure for measure in self._content.measures.values()}
 
     @property
     def categories(self) -> Mapping[str, Category]:

@@ -42,8 +42,11 @@ def check_references(content: Content, facts: Facts) -> None:
 
 def _references(content: Content, facts: Facts) -> Iterator[_Reference]:
     features, scales = content.features, content.scales
+    measures = {measure.measure_name for measure in content.measures.values()}
     for feature in features.values():
         yield feature.iri, "feature", feature.broader, features
+        for name in feature.parameters:
+            yield feature.iri, "measure", name, measures or (name,)
     for category in content.categories.values():
         yield category.iri, "scale", category.scale, scales
     for afbit in facts.of_type("Afbit"):

@@ -17,6 +17,7 @@ from afkb.knowledge.model import (
     Dual,
     EvidenceClass,
     Feature,
+    Measure,
     RoomCategory,
     Scale,
 )
@@ -26,7 +27,13 @@ from afkb.knowledge.relation_reading import (
     read_evidence_class,
     read_rooms,
 )
-from afkb.knowledge.thing_reading import read_afbits, read_categories, read_features, read_scale
+from afkb.knowledge.thing_reading import (
+    read_afbits,
+    read_categories,
+    read_features,
+    read_measure,
+    read_scale,
+)
 from afkb.ontology.names import fragment
 
 
@@ -35,6 +42,7 @@ class Content:
     """The typed items by name, the network's numbers, and the IRI of every name."""
 
     features: Mapping[str, Feature]
+    measures: Mapping[str, Measure]
     scales: Mapping[str, Scale]
     categories: Mapping[str, Category]
     afbits: tuple[Afbit, ...]
@@ -55,6 +63,7 @@ def read_content(files: Sequence[Path]) -> Content:
     afbits = read_afbits(facts)
     content = Content(
         features=read_features(facts),
+        measures=read_all(facts, "Measure", read_measure),
         scales=MappingProxyType(dict(sorted(scales.items(), key=lambda s: s[1].extent_m))),
         categories=read_categories(facts, afbits),
         afbits=afbits,

@@ -11,6 +11,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from afkb.ontology.names import BY_DETECTOR, BY_MEASURES
 from afkb.ontology.notation import write_afbit
 
 Range = tuple[float, float]
@@ -57,6 +58,9 @@ class Feature(Statement):
 
     `kind`: structural, material or grasp. `broader`: feature of which this is a narrower kind.
     `parameters`: fuzzy ranges of measures, keyed by measure and unit (`area_m2`, `height_m`).
+    `grounded_by`: how detectors come to it, one or more of
+    `afkb.ontology.names.GROUNDED_BY`; `grounded_on`: what affords it. `grounding_strength`: its
+    probability where every measure fits fully; `grounding_reason`: why it is weak, or none is.
     """
 
     kind: str
@@ -64,6 +68,26 @@ class Feature(Statement):
     grounding: str
     broader: str | None = None
     parameters: Mapping[str, Trapezoid] = field(default_factory=dict)
+    grounded_by: tuple[str, ...] = ()
+    grounded_on: tuple[str, ...] = ()
+    grounding_strength: float = 0.0
+    grounding_reason: str = ""
+
+    @property
+    def is_weak(self) -> bool:
+        """Whether what grounds it is a hint and no more: never evidence against anything."""
+        return bool(self.grounded_by) and not {BY_DETECTOR, BY_MEASURES} & set(self.grounded_by)
+
+
+@dataclass(frozen=True, slots=True)
+class Measure(Statement):
+    """What a fuzzy range may be of: `measure_name` as ranges name it, its unit, and what has it."""
+
+    measure_name: str
+    measured_in: str
+    measure_of: tuple[str, ...]
+    primitive: str
+    definition: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
+from typing import TypedDict
 
 from afkb.knowledge.facts import Facts
 from afkb.knowledge.item_reading import (
@@ -14,14 +15,17 @@ from afkb.knowledge.item_reading import (
     range_or_none,
     read_all,
 )
-from afkb.knowledge.model import Afbit, Category, Feature, Scale, Trapezoid
+from afkb.knowledge.model import Afbit, Category, Feature, Measure, Scale, Trapezoid
 from afkb.ontology.categories import movability_of
-from afkb.ontology.names import KINDS, SKOS, fragment
+from afkb.ontology.names import BY_MEASURES, GROUNDED_BY, KINDS, SKOS, SUBJECTS, fragment
+
+USUAL_STRENGTH = 0.8
+"""Probability of a feature whose measures all fit, where its grounding states none."""
 
 
 def read_features(facts: Facts) -> Mapping[str, Feature]:
     """The affordance features of all three kinds, by name."""
-    trapezoids = facts.of_type("Trapezoid")
+    ranges = _ranges(facts)
     features: dict[str, Feature] = {}
     for kind, class_name in KINDS.items():
         for iri in facts.of_type(class_name):
@@ -31,15 +35,52 @@ def read_features(facts: Facts) -> Mapping[str, Feature]:
                 definition=facts.text(iri, SKOS + "definition", default=""),
                 grounding=facts.text(iri, "grounding", default=""),
                 broader=name_or_none(facts.one(iri, SKOS + "broader")),
-                parameters=MappingProxyType(
-                    {
-                        facts.text(t, "parameterName"): _trapezoid(facts, t)
-                        for t in trapezoids
-                        if facts.text(t, "ofFeature") == iri
-                    }
-                ),
+                parameters=MappingProxyType(ranges.get(iri, {})),
+                **_grounding(facts, iri),
             )
     return MappingProxyType(dict(sorted(features.items())))
+
+
+def _ranges(facts: Facts) -> dict[str, dict[str, Trapezoid]]:
+    """The fuzzy ranges of each feature, by measure."""
+    ranges: dict[str, dict[str, Trapezoid]] = {}
+    for iri in facts.of_type("Trapezoid"):
+        of_feature = ranges.setdefault(facts.text(iri, "ofFeature"), {})
+        of_feature[facts.text(iri, "parameterName")] = _trapezoid(facts, iri)
+    return ranges
+
+
+class _Grounding(TypedDict):
+    """What a feature states of how detectors come to it."""
+
+    grounded_by: tuple[str, ...]
+    grounded_on: tuple[str, ...]
+    grounding_strength: float
+    grounding_reason: str
+
+
+def _grounding(facts: Facts, iri: str) -> _Grounding:
+    """What is grounded on something, and says no more, is grounded by its measures."""
+    grounded_on = tuple(w for w in SUBJECTS if w in facts.many(iri, "groundedOn"))
+    grounded_by = tuple(w for w in GROUNDED_BY if w in facts.many(iri, "groundedBy"))
+    return _Grounding(
+        grounded_by=grounded_by or ((BY_MEASURES,) if grounded_on else ()),
+        grounded_on=grounded_on,
+        grounding_strength=facts.number(iri, "groundingStrength", default=USUAL_STRENGTH),
+        grounding_reason=facts.text(iri, "groundingReason", default=""),
+    )
+
+
+def read_measure(facts: Facts, iri: str) -> Measure:
+    """One measure."""
+    return Measure(
+        **common(facts, iri),
+        measure_name=facts.text(iri, "measureName"),
+        measured_in=facts.text(iri, "measuredIn", default=""),
+        measure_of=tuple(w for w in SUBJECTS if w in facts.many(iri, "measureOf")),
+        primitive=facts.text(iri, "primitive", default=""),
+        definition=facts.text(iri, SKOS + "definition", default=""),
+    )
 
 
 def _trapezoid(facts: Facts, iri: str) -> Trapezoid:

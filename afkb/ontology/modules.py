@@ -50,7 +50,7 @@ MODULES = (
         "features",
         "affordance features, their grounding, scales, and the annotations that every module uses",
         (),
-        frozenset(("Affordance", *KINDS.values(), "Trapezoid", "Scale")),
+        frozenset(("Affordance", *KINDS.values(), "Trapezoid", "Measure", "Scale")),
     ),
     Module(
         "categories",

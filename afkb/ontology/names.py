@@ -35,6 +35,14 @@ KINDS = {
 """The class of a feature, by its kind."""
 
 
+SUBJECTS = ("body", "surface", "opening", "upright", "part", "gap")
+"""What a measure is of, and what a feature is grounded on."""
+BY_DETECTOR, BY_MEASURES, BY_PRIOR = "detector", "measures", "category prior"
+BY_WEAK_MEASURES, BY_NOTHING = "weak measures", "nothing"
+GROUNDED_BY = (BY_DETECTOR, BY_MEASURES, BY_WEAK_MEASURES, BY_PRIOR, BY_NOTHING)
+"""How detectors come to a feature: one of its own, measures of things, or what things are."""
+
+
 def fragment(iri: str) -> str:
     """The part of an IRI after `#` or the last `/`: the name by which this project calls it.
 

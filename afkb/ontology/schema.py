@@ -19,9 +19,15 @@ _TEXT = {
     "grounding": URIRef(AFN + "grounding"),
     "source": DCTERMS.source,
     "choice": URIRef(AFN + "choice"),
+    "grounding_reason": URIRef(AFN + "groundingReason"),
     "underside_from": URIRef(AFN + "undersideFrom"),
 }
-_PLAIN = {"status", "grounding_status", "observability", "stands_on", "parameter_name", "relation"}
+_PLAIN = {
+    "status", "grounding_status", "observability", "stands_on", "parameter_name", "relation",
+    "measure_name", "measured_in", "primitive",
+}  # fmt: skip
+_WORDS = {"measure_of", "grounded_by", "grounded_on"}
+"""Columns of several plain words."""
 _TERMS = {
     "broader": SKOS.broader,
     "category": URIRef(AFN + "ofCategory"),
@@ -87,6 +93,9 @@ class Table:
             return [(_LISTS[column], Literal(e, lang="en")) for e in row.several(column)]
         if column in _PLAIN:
             return [(property_of(column), Literal(cell, datatype=XSD.string))]
+        if column in _WORDS:
+            words = row.several(column)
+            return [(property_of(column), Literal(w, datatype=XSD.string)) for w in words]
         if column in _TERMS:
             return [(_TERMS[column], URIRef(names.iri(name))) for name in row.several(column)]
         if column in _FLAGS:
@@ -102,6 +111,7 @@ CO_OCCURRENCES = Table("co_occurrences", "CoOccurrence")
 
 TABLES = (
     Table("features", ""),
+    Table("measures", "Measure"),
     Table("trapezoids", "Trapezoid", ("feature", "parameter_name")),
     Table("scales", "Scale"),
     Table("shapes", "Shape"),

@@ -73,8 +73,7 @@ def _observed(
     z = top if supports else (top + bottom) / 2
     belief, movability, weight = {"Floor": 1.0}, "Static", 1.0
     if not track.is_floor:
-        known_ones = network.known(affordances)
-        belief = network.category_posterior(known_ones, size, top, track.extent_known)
+        belief = network.category_posterior(network.known(affordances), size, top)
         movability, weight = network.movability(belief)
     return Entity(
         id=track.id,

@@ -1,0 +1,20 @@
+"""Detector: every feature that the ontology grounds on measures of what was seen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from afkb.plugins import hookimpl
+
+if TYPE_CHECKING:
+    from afkb.knowledge import AfNet
+    from afkb.plugins.protocols import Detector
+
+
+@hookimpl
+def afkb_detectors(knowledge_base: AfNet) -> Iterable[Detector]:
+    """The grounded detector; it reads the groundings when it is first used."""
+    from afkb_grounded.detector import GroundedDetector
+
+    return [GroundedDetector(knowledge_base)]
