@@ -8,7 +8,14 @@ from typing import Any, NamedTuple
 
 from bench.detectors.data import Asked
 
-PARTS = ("surfaces", "mosd", "containers", "redkitchen", "cost")
+PARTS = (
+    "surfaces",
+    "mosd",
+    "containers",
+    "redkitchen",
+    "calibration",
+    "cost",
+)
 """Each is a module of this package."""
 
 
