@@ -9,6 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+WHOLE_FROM = 0.8
+"""A thing is seen whole if this share of its outline is its own: something hides a little of
+nearly everything."""
+
 
 @dataclass(frozen=True, slots=True)
 class OrientedBox:
@@ -110,6 +114,13 @@ class Detection:
     def detectors(self) -> tuple[str, ...]:
         """Names of all detectors that spoke of it, the first to do so first."""
         return tuple(dict.fromkeys(d.detector for d in self.parts)) or (self.detector,)
+
+    @property
+    def seen_whole(self) -> bool:
+        """Whether this view tells how far it reaches: little of its outline is cut or hidden."""
+        if not self.border:
+            return self.extent_known and not self.cut_by_image
+        return self.border.get("real", 0.0) >= WHOLE_FROM
 
     def affords(self, feature: str, at_least: float = 0.5) -> bool:
         """Whether it affords the feature with at least that probability."""

@@ -43,14 +43,16 @@ class Network:
         affordances: Mapping[str, float],
         size_xyz: tuple[float, float, float],
         top_height_m: float,
+        whole: bool = True,
     ) -> dict[str, float]:
         """P(object category | affordances, size, height of its top), summing to 1.
 
         `affordances`: feature to probability; those not named are unobserved, those near 0 were
-        looked for and not found. `size_xyz`: m. `SomethingElse` is among the keys.
+        looked for and not found. `size_xyz`: m, of what isn't seen `whole` at least that long and
+        wide. `SomethingElse` is among the keys.
         Raises `EvidenceError` for unknown features and values out of range.
         """
-        return self.objects.posterior(affordances, size_xyz, top_height_m)
+        return self.objects.posterior(affordances, size_xyz, top_height_m, whole)
 
     def movability(self, posterior: Mapping[str, float]) -> tuple[str, float]:
         """`Static` or `Dynamic`, whichever is more probable, and the mean weight of that kind.

@@ -128,9 +128,13 @@ class ObjectNetwork:
         affordances: Mapping[str, float],
         size_xyz: tuple[float, float, float],
         top_height_m: float,
+        whole: bool = True,
     ) -> dict[str, float]:
-        """P(category | evidence) in closed form; equal to variable elimination (tested)."""
-        shares = self.shares(affordances, size_xyz, top_height_m)
+        """P(category | evidence) in closed form; equal to variable elimination (tested).
+
+        What isn't seen `whole` is at least as long and wide as it looks.
+        """
+        shares = self.shares(affordances, size_xyz, top_height_m, whole)
         return dict(zip(self.categories, shares.tolist(), strict=True))
 
     def shares(
@@ -138,6 +142,7 @@ class ObjectNetwork:
         affordances: Mapping[str, float],
         size_xyz: tuple[float, float, float],
         top_height_m: float,
+        whole: bool = True,
     ) -> Array:
         """`posterior` as an array (C,), in the order of `categories`."""
         likelihoods, bands = self.observed(affordances, size_xyz, top_height_m)
@@ -145,7 +150,8 @@ class ObjectNetwork:
         for name, p in likelihoods.items():
             weights *= p * self.features[name] + (1.0 - p) * (1.0 - self.features[name])
         for name, band in bands.items():
-            weights *= self.measures[name][band]
+            larger = slice(band, None if name in (LENGTH, WIDTH) and not whole else band + 1)
+            weights *= self.measures[name][larger].sum(axis=0)
         total = float(weights.sum())
         if not total > 0:
             raise EvidenceError(

@@ -12,6 +12,7 @@ PARTS = (
     "surfaces",
     "mosd",
     "containers",
+    "movability",
     "redkitchen",
     "calibration",
     "cost",

@@ -73,7 +73,8 @@ def _observed(
     z = top if supports else (top + bottom) / 2
     belief, movability, weight = {"Floor": 1.0}, "Static", 1.0
     if not track.is_floor:
-        belief = network.category_posterior(network.known(affordances), size, top)
+        known_ones = network.known(affordances)
+        belief = network.category_posterior(known_ones, size, top, track.extent_known)
         movability, weight = network.movability(belief)
     return Entity(
         id=track.id,

@@ -115,7 +115,8 @@ def _taken_for(detection: Detection, network: Network) -> dict[str, object]:
     if detection.measures.get("is_floor"):
         belief = {"Floor": 1.0}
     else:
-        belief = network.category_posterior(network.known(detection.affordances), size, top)
+        known = network.known(detection.affordances)
+        belief = network.category_posterior(known, size, top, detection.seen_whole)
     movability, weight = network.movability(belief)
     best = sorted(belief.items(), key=lambda pair: (-pair[1], pair[0]))[:NAMED_CATEGORIES]
     return {

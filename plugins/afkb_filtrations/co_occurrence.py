@@ -109,6 +109,7 @@ def _probability(network: Network, rule: CoOccurrence, detection: Detection) -> 
         network.known(detection.affordances),
         detection.box.size_xyz,
         top_height(detection, rule.feature),
+        detection.seen_whole,
     )
     return network.relations.co_occurrence(rule.name, category)
 

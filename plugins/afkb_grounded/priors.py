@@ -37,4 +37,4 @@ class CategoryPriors:
         first = thing.first
         top = float(first.position_xyz[2]) if SURFACE in thing.kinds else first.box.top
         known = self._network.known(thing.affordances)
-        return self._network.objects.shares(known, first.box.size_xyz, top)
+        return self._network.objects.shares(known, first.box.size_xyz, top, first.seen_whole)

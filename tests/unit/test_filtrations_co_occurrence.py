@@ -1,4 +1,3 @@
-import time
 from pathlib import Path
 
 import pytest
@@ -72,16 +71,3 @@ def test_the_hook_brings_both_orders() -> None:
     predictors = list(afkb_predictors(knowledge_base=AfNet()))
     assert [(p.name, p.order) for p in predictors] == [("duals", 1), ("co-occurrence", 2)]
     assert all(isinstance(p, Predictor) for p in predictors)
-
-
-def test_a_view_takes_under_five_milliseconds() -> None:
-    view = [chair(x) for x in range(8)]
-    view += [thing("ContainAbility", (0.4 * i, 3, 0.73)) for i in range(12)]
-    predictors = list(afkb_predictors(knowledge_base=AfNet()))
-    for p in predictors:
-        p.predict(view)
-    start = time.process_time()
-    for _ in range(20):
-        for p in predictors:
-            p.predict(view)
-    assert (time.process_time() - start) / 20 < 5e-3
