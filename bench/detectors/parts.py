@@ -8,15 +8,7 @@ from typing import Any, NamedTuple
 
 from bench.detectors.data import Asked
 
-PARTS = (
-    "surfaces",
-    "mosd",
-    "containers",
-    "movability",
-    "redkitchen",
-    "calibration",
-    "cost",
-)
+PARTS = ("surfaces", "mosd", "containers", "movability", "redkitchen", "cost")
 """Each is a module of this package."""
 
 
