@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from afkb.flow import Detection, View
+from afkb.flow import Detection
 from afkb.knowledge import AfNet
 from bench.beliefs import MEANT, meant, word_of
 from bench.detectors.containers import kind_of, thing_at
 from bench.detectors.data import Home
-from bench.detectors.seen import SAME_STAMP_S
-from bench.detectors.surfaces import NOT_A_SUPPORT, in_some_thing
+from bench.detectors.seen import MARGIN_M, inside
+from bench.detectors.surfaces import HEIGHT_TOLERANCE_M, NOT_A_SUPPORT, in_some_thing
 
 CONTAINING = {"ContainAbility", "IntrinsicContainAbility"}
 AFFORDS_FROM = 0.5
@@ -21,52 +21,91 @@ NO_LABEL = {"BlockAbility", "PassAbility"}
 """The truth of the homes lists neither walls nor doorways."""
 
 
+SEVERAL_LEVELS = (
+    "bathtub",
+    "bed",
+    "coffee_table",
+    "dishwasher",
+    "shelf",
+    "sink",
+    "sofa_chair",
+    "toilet",
+)
+"""Things with real upward surfaces below their top: boards, arms, rims, seats, racks, basins."""
+UNTOLD = ("plant", "floor_lamp", "table_lamp", "towel_rack")
+"""Things of which the truth doesn't say whether some part of them is flat."""
+MOSTLY = 0.6
+SAME_BODY_IOU = 0.25
+"""A body is seen from one side and misses up to three quarters of its box, as a carton does that is
+seen from its narrow side; two things in one body, or half a sofa, share less."""
+
+
 class HomeLabels:
     """The truth of one home.
 
-    - Support: right if its footprint lies in things' boxes, at a height that they have. The floor
-      isn't judged: it would always be right.
+    - Support: right if it lies in a thing's box at its top, or at any height of a thing that has
+      several levels; wrong otherwise. The floor isn't judged: it would always be right.
     - Contain: right if its centre lies on a hollow or closed small thing, or a large container;
       intrinsically: if on a closed one.
+    - Dispose, of a body that was cut out: right if it is one thing, by its box.
     - Any other feature: what the ontology says of the category of the thing that it lies on,
       where the truth's word has one.
     """
 
     def __init__(self, home: Home, kb: AfNet) -> None:
         self.building = str(home.truth.get("scene", home.name))
-        self._home, self._truth, self._kb = home.name, home.truth, kb
-        self._supports = [t for t in self._things if t["category"] not in NOT_A_SUPPORT]
-        self._stamps = np.array([v["stamp"] for v in self._truth["views"]])
+        self._home, self._kb = home.name, kb
+        self._things: list[dict[str, Any]] = home.truth["things"]
+        self._flat = [t for t in self._things if t["category"] not in NOT_A_SUPPORT]
+        self._views = home.truth["views"]
+        self._stamps = np.array([v["stamp"] for v in self._views])
         self._afforded: dict[str, set[str]] = {}
 
-    @property
-    def _things(self) -> list[dict[str, Any]]:
-        things: list[dict[str, Any]] = self._truth["things"]
-        return things
-
-    def scene(self, view: View) -> str:
+    def scene(self, index: int, stamp: float) -> str:
         """The room of the home."""
-        nearest = int(np.abs(self._stamps - view.stamp).argmin())
-        assert abs(self._stamps[nearest] - view.stamp) <= SAME_STAMP_S
-        return f"{self._home} {self._truth['views'][nearest]['room']}"
+        nearest = int(np.abs(self._stamps - stamp).argmin())
+        return f"{self._home} {self._views[nearest]['room']}"
 
-    def judge(self, detection: Detection, feature: str, view: View) -> tuple[bool, str] | None:
+    def judge(self, claim: Detection, feature: str, index: int) -> tuple[bool, str] | None:
         """Whether the claim is so, and of which thing."""
-        if feature in NO_LABEL or detection.measures.get("is_floor"):
+        if feature in NO_LABEL or claim.measures.get("is_floor"):
             return None
-        if feature == "SupportAbility" and detection.about is None:
-            return in_some_thing(detection, self._supports), _place(detection)
-        thing = thing_at(detection, self._things)
-        name = thing["name"] if thing else _place(detection)
-        if feature in CONTAINING:
+        thing = thing_at(claim, self._things)
+        name = thing["name"] if thing else _place(claim)
+        told: bool | None
+        if feature == "SupportAbility" and "area" in claim.measures:
+            told = self._supports(claim)
+        elif feature in CONTAINING:
             kind = kind_of(thing) if thing else None
-            return kind == "closed" if feature.startswith("Intrinsic") else kind is not None, name
+            told = kind == "closed" if feature.startswith("Intrinsic") else kind is not None
+        elif feature == "DisposeAbility" and claim.pixels is not None:
+            told = thing is not None and _iou(claim, thing) >= SAME_BODY_IOU
+        else:
+            told = self._afforded_by(thing, feature)
+        return None if told is None else (told, name)
+
+    def _supports(self, claim: Detection) -> bool | None:
+        height = claim.measures["height"]
+        around = [
+            t
+            for t in self._flat
+            if t["min"][2] - MARGIN_M <= height <= t["max"][2] + HEIGHT_TOLERANCE_M
+            and inside(t, claim.footprint_xy).mean() > MOSTLY
+        ]
+        if not around:  # a run of furniture, or nothing
+            return in_some_thing(claim, self._flat)
+        tops = [h for t in around for h in (t["top_height"], t["max"][2])]
+        if min(abs(height - top) for top in tops) <= HEIGHT_TOLERANCE_M:
+            return True
+        if any(t["category"] in SEVERAL_LEVELS for t in around):
+            return True
+        return None if any(t["category"] in UNTOLD for t in around) else False
+
+    def _afforded_by(self, thing: dict[str, Any] | None, feature: str) -> bool | None:
+        """By the categories that the truth's word means, in the ontology."""
         if thing is None or word_of(thing) not in MEANT:
             return None
-        return feature in self._affords(word_of(thing)), name
-
-    def _affords(self, word: str) -> set[str]:
-        """The features of the categories that the word means, or of categories above them."""
+        word = word_of(thing)
         if word not in self._afforded:
             kinds = meant(word, self._kb)
             self._afforded[word] = {
@@ -74,10 +113,19 @@ class HomeLabels:
                 for a in self._kb.afbits
                 if a.category in kinds and a.strength >= AFFORDS_FROM
             }
-        return self._afforded[word]
+        return feature in self._afforded[word]
 
 
-def _place(detection: Detection) -> str:
+def _iou(claim: Detection, thing: dict[str, Any]) -> float:
+    """Shared volume of the claim's upright bounds and the thing's box, by that of their union."""
+    low = np.array([*claim.footprint_xy.min(axis=0), claim.box.bottom])
+    high = np.array([*claim.footprint_xy.max(axis=0), claim.box.top])
+    a, b = np.array(thing["min"]), np.array(thing["max"])
+    shared = float(np.prod(np.clip(np.minimum(high, b) - np.maximum(low, a), 0, None)))
+    return shared / max(float(np.prod(high - low)) + float(np.prod(b - a)) - shared, 1e-9)
+
+
+def _place(claim: Detection) -> str:
     """A name for what is no listed thing: where it is, to a quarter of a metre."""
-    x, y, z = (round(4 * float(v)) / 4 for v in detection.position_xyz)
+    x, y, z = (round(4 * float(v)) / 4 for v in claim.position_xyz)
     return f"at {x} {y} {z}"

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from scipy.stats import rankdata
 
 BINS = 10
-RESAMPLED = 500
+RESAMPLED = 300
 """Bootstrap samples: the ends of a 90 % interval then are known to about 1 % of its length."""
 
 Floats = NDArray[np.float64]
+Classes = NDArray[np.str_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,42 +49,47 @@ def brier(p: Floats, right: Floats) -> float:
     return float(np.mean((p - right) ** 2))
 
 
-def brier_skill(p: Floats, right: Floats) -> float | None:
-    """1 - Brier / Brier of the base rate: 0 for that constant, 1 for an oracle; None if undefined.
+def brier_skill(p: Floats, right: Floats, classes: Classes) -> float | None:
+    """1 - Brier / Brier of the base rates: 0 for these constants, 1 for an oracle.
 
-    The base rate is that of the judged samples themselves, the best constant there is.
+    The base rate is that of each class (detector and feature) among the judged samples themselves:
+    the best constants there are. None where all samples of each class are alike.
     """
-    base = brier(np.full(len(right), right.mean()), right)
-    return 1 - brier(p, right) / base if base > 0 else None
+    base = np.zeros(len(p))
+    for name in np.unique(classes):
+        base[classes == name] = right[classes == name].mean()
+    worst = brier(base, right)
+    return 1 - brier(p, right) / worst if worst > 0 else None
 
 
-def area_under_curve(p: Floats, right: Floats) -> float | None:
-    """Probability that a right one is stated above a wrong one, ties half (Mann-Whitney).
+def area_under_curve(p: Floats, right: Floats, classes: Classes) -> float | None:
+    """Probability that a right one is stated above a wrong one of its class, ties half.
 
-    None where there are only right ones, or only wrong ones.
+    (Mann-Whitney, over all such pairs.) None where there is no such pair.
     """
-    n_right = float(right.sum())
-    n_wrong = len(right) - n_right
-    if not n_right or not n_wrong:
-        return None
-    ranks = rankdata(p)[right > 0].sum()
-    return float((ranks - n_right * (n_right + 1) / 2) / (n_right * n_wrong))
+    above = pairs = 0.0
+    for name in np.unique(classes):
+        own, so = p[classes == name], right[classes == name]
+        n_right = float(so.sum())
+        above += float(rankdata(own)[so > 0].sum()) - n_right * (n_right + 1) / 2
+        pairs += n_right * (len(so) - n_right)
+    return above / pairs if pairs else None
 
 
-def summary(p: Floats, right: Floats) -> dict[str, Any]:
+def summary(p: Floats, right: Floats, classes: Classes) -> dict[str, Any]:
     """All of these, with the counts."""
     return {
         "samples": len(p),
         "right": float(right.mean()),
         "stated": float(p.mean()),
         "ece": expected_calibration_error(p, right),
-        "brier_skill": brier_skill(p, right),
-        "auc": area_under_curve(p, right),
+        "brier_skill": brier_skill(p, right, classes),
+        "auc": area_under_curve(p, right, classes),
     }
 
 
 def bootstrapped(
-    p: Floats, right: Floats, scenes: NDArray[np.str_], rng: np.random.Generator
+    p: Floats, right: Floats, classes: Classes, scenes: Classes, rng: np.random.Generator
 ) -> dict[str, list[float]]:
     """90 % interval of each measure when whole scenes are drawn with replacement.
 
@@ -94,7 +100,7 @@ def bootstrapped(
     drawn: dict[str, list[float]] = {"ece": [], "brier_skill": [], "auc": []}
     for _ in range(RESAMPLED):
         picked = np.concatenate([members[i] for i in rng.integers(0, len(names), len(names))])
-        found = summary(p[picked], right[picked])
+        found = summary(p[picked], right[picked], classes[picked])
         for name, values in drawn.items():
             if found[name] is not None:
                 values.append(found[name])

@@ -8,7 +8,15 @@ from typing import Any, NamedTuple
 
 from bench.detectors.data import Asked
 
-PARTS = ("surfaces", "mosd", "containers", "movability", "redkitchen", "cost")
+PARTS = (
+    "surfaces",
+    "mosd",
+    "containers",
+    "movability",
+    "redkitchen",
+    "calibration",
+    "cost",
+)
 """Each is a module of this package."""
 
 

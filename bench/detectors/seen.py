@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
+from afkb_mapping.calibration import CalibratedDetector
 
 MARGIN_M = 0.05
 """A thing's box reaches this far beside it: noise at the end of a room, and two depth steps."""
@@ -22,9 +23,15 @@ SAME_STAMP_S = 0.05
 
 @dataclass
 class Run:
-    """Every detection of a recording, by view, and what each detector took."""
+    """Every detection of a recording, by view, and what each detector took.
+
+    `scored` are the same detections, in the same order, before their plugin's table made
+    probabilities of their scores; `stamps` the views' times, s.
+    """
 
     views: list[tuple[int, list[Detection]]] = field(default_factory=list)
+    scored: list[list[Detection]] = field(default_factory=list)
+    stamps: list[float] = field(default_factory=list)
     milliseconds: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
 
     def of(self, feature: str, at_least: float = CLAIMED) -> Iterator[tuple[int, Detection]]:
@@ -40,14 +47,29 @@ def run_detectors(views: Iterable[View], detectors: Sequence[Any]) -> Run:
     run = Run()
     for view in views:
         found: list[Detection] = []
+        scored: list[Detection] = []
         for stage in sorted({d.stage for d in detectors}):
             earlier = tuple(found)
             for detector in (d for d in detectors if d.stage == stage):
                 start = time.thread_time()
-                found += detector.detect(view, earlier)
+                new, stated = _scored_and_stated(detector, view, earlier)
                 run.milliseconds[detector.name].append(1e3 * (time.thread_time() - start))
+                scored += new
+                found += stated
         run.views.append((view.index, found))
+        run.scored.append(scored)
+        run.stamps.append(view.stamp)
     return run
+
+
+def _scored_and_stated(
+    detector: Any, view: View, earlier: tuple[Detection, ...]
+) -> tuple[list[Detection], list[Detection]]:
+    if not isinstance(detector, CalibratedDetector):
+        found = list(detector.detect(view, earlier))
+        return found, found
+    scored = list(detector.scorer.detect(view, earlier))
+    return scored, [detector.calibrate(d) for d in scored]
 
 
 def placed_views(views: Iterable[object], truth: dict[str, Any]) -> Iterator[View]:

@@ -5,11 +5,12 @@ labelled frames, by `python -m bench.calibration fit`. A plugin ships what was c
 table beside its code and hands out its detector as `calibrated(MyDetector(), table)`; nothing else
 of it knows. Later stages see calibrated detections too, as does whoever calls the detector.
 
-Platt's logistic curve (1999) with two more terms, as errors grow with distance and shrink with
-evidence:
+Platt's logistic curve (1999) with four more terms, of what every detection tells: errors grow with
+distance, shrink with evidence, and depend on the size of a thing and on whether the image cuts it.
 
     logit p = intercept + slope · logit score + log_range · ln(range / 2 m)
-              + log_pixels · ln(pixels / 1000)
+              + log_pixels · ln(pixels / 1000) + log_size · ln(longest side / 0.3 m)
+              + cut · (1 if the image cuts it, else 0)
 
 It is fitted with a pull towards "as scored", so that few examples change little. The slope isn't
 negative: a better score never becomes a worse probability.
@@ -20,8 +21,7 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from importlib.resources.abc import Traversable
+from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 
 from afkb.flow import Detection, View
@@ -29,10 +29,10 @@ from afkb.plugins.protocols import Detector
 
 ANY = "*"
 """In a table: every feature that has no row of its own, as its examples were too few."""
-RANGE_M, PIXELS = 2.0, 1000.0
+RANGE_M, PIXELS, SIZE_M = 2.0, 1000.0, 0.3
 SURE = 0.995
 """Scores and probabilities stay this far from certain: no table has examples for more."""
-LEAST_RANGE_M = 0.2
+LEAST_RANGE_M, LEAST_SIZE_M = 0.2, 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,29 +43,29 @@ class Curve:
     slope: float = 1.0
     log_range: float = 0.0
     log_pixels: float = 0.0
+    log_size: float = 0.0
+    cut: float = 0.0
 
-    def probability(self, score: float, range_m: float, n_pixels: int) -> float:
-        """Probability of a score at a distance (m), by evidence of so many pixels.
+    def probability(self, terms: Sequence[float]) -> float:
+        """Probability of a detection with these terms.
 
-        >>> round(Curve().probability(0.8, 3.0, 500), 6)
+        >>> round(Curve().probability((1.0, math.log(4.0), 0.0, 0.0, 0.0, 0.0)), 6)
         0.8
         """
-        if score <= 0:
-            return 0.0
-        weights = (self.intercept, self.slope, self.log_range, self.log_pixels)
-        terms = terms_of(score, range_m, n_pixels)
-        logit = sum(w * t for w, t in zip(weights, terms, strict=True))
+        logit = sum(w * t for w, t in zip(astuple(self), terms, strict=True))
         return min(max(1 / (1 + math.exp(-logit)), 1 - SURE), SURE)
 
 
-def terms_of(score: float, range_m: float, n_pixels: int) -> tuple[float, float, float, float]:
+def terms_of(detection: Detection, feature: str) -> tuple[float, ...]:
     """What a curve's coefficients are multiplied with, in their order."""
-    kept = min(max(score, 1 - SURE), SURE)
+    score = min(max(detection.affordances[feature], 1 - SURE), SURE)
     return (
         1.0,
-        math.log(kept / (1 - kept)),
-        math.log(max(range_m, LEAST_RANGE_M) / RANGE_M),
-        math.log(max(n_pixels, 1) / PIXELS),
+        math.log(score / (1 - score)),
+        math.log(max(detection.range_m, LEAST_RANGE_M) / RANGE_M),
+        math.log(max(detection.n_pixels, 1) / PIXELS),
+        math.log(max(*detection.box.size_xyz, LEAST_SIZE_M) / SIZE_M),
+        float(detection.cut_by_image),
     )
 
 
@@ -86,7 +86,9 @@ class CalibratedDetector:
         return replace(
             scored,
             affordances={
-                feature: self._curve(feature).probability(score, scored.range_m, scored.n_pixels)
+                feature: self._curve(feature).probability(terms_of(scored, feature))
+                if score > 0
+                else 0.0
                 for feature, score in scored.affordances.items()
             },
         )
@@ -95,23 +97,23 @@ class CalibratedDetector:
         return self.curves.get(feature) or self.curves.get(ANY) or Curve()
 
 
-def calibrated(detector: Detector, table: Traversable | Path) -> Detector:
-    """The detector with the curves of a table, as `bench.calibration` writes it."""
-    return CalibratedDetector(detector, read_curves(table, detector.name))
+def calibrated(detector: Detector, table: Path) -> Detector:
+    """The detector with the curves of a table; the detector as it is where there are none yet."""
+    curves = read_curves(table, detector.name)
+    return CalibratedDetector(detector, curves) if curves else detector
 
 
-def read_curves(table: Traversable | Path, detector: str) -> dict[str, Curve]:
+def read_curves(table: Path, detector: str) -> dict[str, Curve]:
     """Feature to curve, of one detector; no curves where the plugin has no table yet.
 
-    Columns: detector, feature, intercept, slope, log_range, log_pixels; others say what they were
+    Columns: detector, feature, and the coefficients of a `Curve`; others say what they were
     counted from.
     """
     if not table.is_file():
         return {}
     rows = csv.DictReader(table.read_text(encoding="utf-8").splitlines())
-    names = ("intercept", "slope", "log_range", "log_pixels")
     return {
-        row["feature"]: Curve(*(float(row[name]) for name in names))
+        row["feature"]: Curve(*(float(row[term.name]) for term in fields(Curve)))
         for row in rows
         if row["detector"] == detector
     }

@@ -25,8 +25,7 @@ from afkb_grounded.uprights import parts_of
 LEAST_CLAIM = 0.1
 """Nothing is said of what is less probable: not to be found is no evidence for a hint."""
 CUT = 0.5
-"""How often a thing that the image edge cuts, or whose extent is unknown, is as large as it
-looks: its measures are those of a part."""
+"""How much a thing's measures say where it isn't seen whole: they are those of a part."""
 
 NO_HOLLOW = {"depth_m": 0.0, "depth_over_opening": 0.0}
 """Of a body in which no hollow was seen."""
@@ -83,8 +82,7 @@ class GroundedDetector:
         self, thing: Seen, measures: Mapping[str, float], prior: Mapping[str, float]
     ) -> list[Detection]:
         first = thing.first
-        known = first.extent_known and not first.cut_by_image
-        certain = 1.0 if known else CUT
+        certain = 1.0 if first.seen_whole else CUT
         says = {f: certain * p for f, p in
                 afforded(self._groundings, thing.kinds, measures).items()}  # fmt: skip
         for feature, p in prior.items():
