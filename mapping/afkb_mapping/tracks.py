@@ -18,6 +18,9 @@ DISTINCT_STEP_M = 0.25
 DISTINCT_BEARING = math.radians(10)
 """Looks from closer together than both of these are one piece of evidence, not two."""
 KEPT_EVIDENCE = 5
+UNSAID = 0.05
+"""What a view is taken to say of a feature that no detector speaks of in it: detectors leave out
+what they hold for next to impossible."""
 
 
 @dataclass(slots=True)
@@ -100,8 +103,14 @@ class ObservedTrack:
 
     @property
     def affordances(self) -> dict[str, float]:
-        """Feature name to probability: mean over the views that spoke of it."""
-        return {n: total / w for n, (w, total) in sorted(self.affordance_sums.items())}
+        """Feature name to probability: mean over all views of it, by their pixels.
+
+        A view that shows it and doesn't speak of a feature speaks against it.
+        """
+        return {
+            name: (total + UNSAID * (self.pixels - weight)) / self.pixels
+            for name, (weight, total) in sorted(self.affordance_sums.items())
+        }
 
     @property
     def extent_known(self) -> bool:

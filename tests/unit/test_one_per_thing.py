@@ -59,3 +59,15 @@ def test_one_frame_tells_what_stays_and_what_gets_moved() -> None:
     mug = described(container(1, 0), network)
     assert (bed["movability"], mug["movability"]) == ("Static", "Dynamic")
     assert (bed["scale"], mug["scale"]) == ("Large", "Small")
+
+
+def test_a_view_that_does_not_speak_of_a_feature_speaks_against_it() -> None:
+    association = Association(Ids())
+    mug = container(1, 0)
+    body = replace(mug, detector="things", affordances={"DisposeAbility": 0.8})
+    for index in range(3):
+        association.match(view(index), [body])
+    (track,) = association.match(view(3), one_per_thing([body, replace(mug, about=0)]))
+    assert track is not None and len(association.tracks) == 1
+    assert track.affordances["DisposeAbility"] == pytest.approx(0.8)
+    assert track.affordances["ContainAbility"] == pytest.approx((0.9 + 3 * 0.05) / 4)
