@@ -29,6 +29,8 @@ KINDS = ("hollow", "closed", "large")
 BESIDE_M = 0.04
 SAME_PLACE_M = 0.15
 VIEWS = 2
+CLOSED_SHARE = 0.5
+"""What is as likely closed as not is taken for closed."""
 Claim = tuple[int, Detection]
 
 
@@ -110,7 +112,8 @@ def score(
 
 def _claimed_kind(d: Detection) -> str:
     """What a claim takes its thing for; what is let into a surface or stands wide is large."""
-    if d.affords("IntrinsicContainAbility", CLAIMED):
+    closed = d.affordances.get("IntrinsicContainAbility", 0.0)
+    if closed >= CLOSED_SHARE * d.affordances["ContainAbility"]:
         return "closed"
     return "large" if max(d.box.size_xyz) >= 0.3 else "hollow"
 

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
 from afkb.flow import Detection, View
-from afkb_containers.judge import LEAST_CLAIM, container_detection, judge
+from afkb_containers.judge import LEAST_CLAIM, container_detection, judge, look_at
 from afkb_containers.settings import ContainerSettings
-from afkb_containers.solid import solid_of
+from afkb_containers.solid import ramp
 from afkb_containers.sunk import sunk_containers
 from afkb_mapping.bodies import Body, Stand, bodies_among
-from afkb_mapping.openings import find_opening
 from afkb_mapping.trapezoids import membership
 
 ATTACHED = (0.08, 0.22)
@@ -38,28 +34,23 @@ class ContainerDetector:
         """Containers in the map frame; none where the view has no depth."""
         if view.depth_m is None or view.camera is None:
             return []
-        camera_xyz = view.T_map_camera[:3, 3]
         judged = (
-            self._detection(k, body, earlier[k], camera_xyz)
-            for k, body in bodies_among(earlier, view)
+            self._detection(k, body, earlier[k], view) for k, body in bodies_among(earlier, view)
         )
         found = [d for d in judged if d is not None]
         return found + list(sunk_containers(view, earlier, self.settings, self.name))
 
-    def _detection(
-        self, index: int, body: Body, thing: Detection, camera_xyz: NDArray[np.float64]
-    ) -> Detection | None:
+    def _detection(self, index: int, body: Body, thing: Detection, view: View) -> Detection | None:
         s = self.settings
-        length, attached = thing.measures["length"], thing.measures["attached"]
+        length = thing.measures["length"]
         size = membership(length, s.sides_m(body.stand))
-        size *= min(1.0, max(0.0, (ATTACHED[1] - attached) / (ATTACHED[1] - ATTACHED[0])))
+        size *= 1 - ramp(thing.measures["attached"], ATTACHED)
         if size <= 0:
             return None
-        solid = solid_of(body, length, s)
-        if body.stand is not Stand.ON_FLOOR and solid.height_m > s.tallest_m - 0.02:
+        looks = look_at(body, length, view, s)
+        if body.stand is not Stand.ON_FLOOR and looks.height_m > s.tallest_m - 0.02:
             return None
-        opening = find_opening(body, camera_xyz)
-        verdict = judge(body, size, solid, opening, s)
+        verdict = judge(body, size, looks, s)
         if verdict.contains < LEAST_CLAIM:
             return None
-        return container_detection(body, index, verdict, solid, opening, self.name)
+        return container_detection(body, index, verdict, looks, self.name)

@@ -5,105 +5,157 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from afkb.flow import Detection
+from afkb.flow import Detection, View
+from afkb_containers.noise import noise_of
 from afkb_containers.settings import ContainerSettings
-from afkb_containers.solid import Solid
+from afkb_containers.silhouette import Silhouette, silhouette_of
+from afkb_containers.solid import compact, convex, ramp, whole
+from afkb_containers.spread import Spread, spread_of
 from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.from_above import box_around, on_grid
-from afkb_mapping.openings import Opening
+from afkb_mapping.openings import Opening, Top, look_at_top
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.trapezoids import membership
 
 LEAST_CLAIM = 0.1
+EDGE_SHARE = 1 / 525
+"""Width of the mixed edge of a body, as a share of the focal length: a pixel of a Kinect's."""
 CUT = 0.5
 """A body that the image edge cuts shows neither its top nor its thickness."""
-CLOSED = {Stand.ON_SUPPORT: 0.75, Stand.HIDDEN: 0.60, Stand.ON_FLOOR: 0.0}
-"""How often a closed, compact, upright body holds something. On the floor such bodies are stools
-and cabinets as often as boxes, so that only an opening counts there."""
+SOLID = {Stand.ON_SUPPORT: 0.85, Stand.HIDDEN: 0.72, Stand.ON_FLOOR: 0.0}
+"""How often a compact, upright body holds something. On the floor such bodies are stools and
+cabinets as often as boxes, so that only an opening counts there."""
+CLOSED_UNSEEN = 0.8
+"""How often such a body is closed if nothing is seen of its top, else what `LID` says."""
+LID = (0.4, 0.8)
+"""Share of sight lines that end on its top: all of an open thing go in, all of a closed one end."""
+RIM_SHARE = (0.5, 0.8)
+INSIDE_SHARE = 0.15
 SIGHT_SHARE = 0.6
 """Share of what a sight line could show of an opening, from which it is taken for deep."""
 
 
 @dataclass(frozen=True, slots=True)
+class Looks:
+    """All that is measured of a body; no outline where nothing else speaks for a container."""
+
+    height_m: float
+    noise_m: float
+    spread: Spread
+    top: Top | None
+    compact: float
+    outline: Silhouette | None
+
+    @property
+    def opening(self) -> Opening | None:
+        """The opening in its top, if one is seen."""
+        return self.top.opening if self.top else None
+
+
+def look_at(body: Body, length_m: float, view: View, settings: ContainerSettings) -> Looks:
+    """Measure a body of a length, seen from above."""
+    assert view.depth_m is not None and view.camera is not None
+    camera_xyz = view.T_map_camera[:3, 3]
+    height = max(percentile(body.points[:, 2], 98.0) - body.base_m, 1e-3)
+    noise = noise_of(body, view.depth_m)
+    edge = max(1, round(EDGE_SHARE * view.camera.fx))
+    spread = spread_of(body, camera_xyz, noise, edge)
+    top = look_at_top(body, camera_xyz, sigma_m=noise)
+    fits = SOLID[body.stand] * compact(height, length_m, spread, settings)
+    outline = None
+    if fits > 0 or (top is not None and top.opening is not None):
+        outline = silhouette_of(body, view.depth_m, view.camera.fx, noise)
+    return Looks(height, noise, spread, top, fits, outline)
+
+
+@dataclass(frozen=True, slots=True)
 class Verdict:
-    """Probabilities that a thing is an open, and that it is a closed, container."""
+    """Probabilities that a thing is an open, that it is a closed, and that it is a container."""
 
     open_p: float
     closed_p: float
-
-    @property
-    def contains(self) -> float:
-        """Probability that it contains either way."""
-        return max(self.open_p, self.closed_p)
+    contains: float
 
 
-def judge(
-    body: Body,
-    size: float,
-    solid: Solid,
-    opening: Opening | None,
-    settings: ContainerSettings,
-) -> Verdict:
+def judge(body: Body, size: float, looks: Looks, settings: ContainerSettings) -> Verdict:
     """Weigh an opening against a closed body; `size` is how well the thing's size fits, 0 to 1."""
-    open_p = 0.0
-    if opening is not None and opening.rim_share >= 0.5:
-        deep = membership(opening.depth_m / opening.width_m, settings.depth_over_opening)
-        if opening.sight_share >= SIGHT_SHARE:
-            deep = max(deep, 0.9)
-        if body.stand is Stand.ON_FLOOR:
-            deep *= membership(opening.depth_m, settings.bin_depth_m)
-        around = min(1.0, (opening.rim_share - 0.5) / 0.3)
-        seen = min(1.0, opening.inside_share / 0.15)
-        open_p = 0.95 * size * solid.whole * deep * (0.3 + 0.7 * around) * (0.3 + 0.7 * seen)
-    closed_p = CLOSED[body.stand] * solid.degree * size * (1 - open_p)
-    if body.stand is Stand.HIDDEN:
-        closed_p *= membership(solid.length_m, settings.hidden_size_m)
-    return Verdict(open_p, closed_p * (CUT if body.cut_by_image else 1.0))
+    if looks.outline is None:
+        return Verdict(0.0, 0.0, 0.0)
+    whole_p = whole(looks.outline, looks.height_m)
+    open_p = 0.95 * size * whole_p * _open(body.stand, looks.opening, settings)
+    solid_p = (1 - open_p) * looks.compact * size * convex(looks.outline, looks.height_m)
+    solid_p *= CUT if body.cut_by_image else 1.0
+    return Verdict(open_p, solid_p * _closed_share(looks.top), open_p + solid_p)
+
+
+def _open(stand: Stand, opening: Opening | None, settings: ContainerSettings) -> float:
+    """How much an opening is one that holds something."""
+    if opening is None or opening.rim_share < RIM_SHARE[0]:
+        return 0.0
+    deep = membership(opening.depth_m / opening.width_m, settings.depth_over_opening)
+    if opening.sight_share >= SIGHT_SHARE:
+        deep = max(deep, 0.9)
+    if stand is Stand.ON_FLOOR:
+        deep *= membership(opening.depth_m, settings.bin_depth_m)
+    around = ramp(opening.rim_share, RIM_SHARE)
+    seen = min(1.0, opening.inside_share / INSIDE_SHARE)
+    return deep * (0.3 + 0.7 * around) * (0.3 + 0.7 * seen)
+
+
+def _closed_share(top: Top | None) -> float:
+    """How often a container with such a top is closed."""
+    if top is None or not top.tells:
+        return CLOSED_UNSEEN
+    return ramp(top.lid_share, LID)
 
 
 def container_detection(
-    body: Body,
-    about: int,
-    verdict: Verdict,
-    solid: Solid,
-    opening: Opening | None,
-    detector: str,
+    body: Body, about: int, verdict: Verdict, looks: Looks, detector: str
 ) -> Detection:
     """The body at index `about`, from its base up to its rim or top; its centre is that box's."""
     base_m = body.base_m
-    rim = opening.rim_height_m if opening else base_m + solid.height_m
+    rim = looks.opening.rim_height_m if looks.opening else base_m + looks.height_m
     box = box_around(on_grid(body.points, 0.005), rim, 0.0, rim - base_m)
     affordances = {"ContainAbility": verdict.contains}
     if verdict.closed_p >= LEAST_CLAIM:
         affordances["IntrinsicContainAbility"] = verdict.closed_p
-    spread = body.sigma_m**2 + 1e-4
     return Detection(
         detector=detector,
         affordances=affordances,
         box=box,
         position_xyz=np.array(box.center_xyz),
-        covariance_xyz=np.diag([spread, spread, 0.25 * spread]),
+        covariance_xyz=_covariance(looks.noise_m),
         footprint_xy=on_grid(body.points, 0.02),
         n_pixels=len(body.u),
         range_m=percentile(body.depth_m, 1.0),
         image_box=body.image_box,
         cut_by_image=body.cut_by_image,
-        measures=_measures(body, rim, solid, opening),
+        measures=_measures(body, rim, looks),
         about=about,
     )
 
 
-def _measures(body: Body, rim_m: float, solid: Solid, opening: Opening | None) -> dict[str, float]:
+def _covariance(noise_m: float) -> NDArray[np.float64]:
+    spread = noise_m**2 + 1e-4
+    return np.diag([spread, spread, 0.25 * spread])
+
+
+def _measures(body: Body, rim_m: float, looks: Looks) -> dict[str, float]:
     """Heights, and what spoke for and against; no `support_height` where that isn't seen."""
     measures = {
         "rim_height": rim_m,
         "height": rim_m - body.base_m,
-        "thickness": solid.thickness_m,
-        "solidity": solid.solidity,
+        "thickness": looks.spread.thickness_m,
+        "solidity": looks.outline.solidity if looks.outline else 0.0,
+        "noise": looks.noise_m,
     }
     if body.support_height_m is not None:
         measures["support_height"] = body.support_height_m
+    if looks.top is not None:
+        measures |= {"lid_share": looks.top.lid_share, "sight": looks.top.sight_m}
+    opening = looks.opening
     if opening is not None:
         measures |= {
             "depth": opening.depth_m,

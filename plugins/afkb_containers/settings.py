@@ -21,8 +21,8 @@ class ContainerSettings:
     - `depth_over_opening`: of an opening, unless a sight line could show no more of it, and
       `max_extent_m`, of a closed body: both as the ontology states them.
     - `solid_height_m`, `solid_thickness_m`: of a closed body, which keep books, frames, screens
-      and game controllers out.
-    - `hidden_size_m`: `size_m` of a closed body whose support isn't seen.
+      and game controllers out; `upright_height_m`: of one that is about as high as long.
+    - `closed_size_m`: `size_m` of a closed body; what is larger is furniture as often.
     - `bin_size_m`: `size_m` of what stands on the floor; `bin_depth_m`: depth of its opening.
     - `basin_width_m`: shorter side of what is let into a support.
     - `tallest_m`: highest point of a thing over its support that is looked at.
@@ -31,12 +31,13 @@ class ContainerSettings:
     size_m: Limits = (0.035, 0.05, 0.35, 0.60)
     depth_over_opening: Limits = (0.10, 0.25, 10.0, 20.0)
     max_extent_m: Limits = (0.02, 0.05, 0.6, 1.0)
-    hidden_size_m: Limits = (0.035, 0.05, 0.20, 0.35)
+    closed_size_m: Limits = (0.035, 0.05, 0.22, 0.38)
     bin_size_m: Limits = (0.12, 0.18, 0.65, 0.85)
     bin_depth_m: Limits = (0.05, 0.10, math.inf, math.inf)
     basin_width_m: Limits = (0.10, 0.20, math.inf, math.inf)
     solid_height_m: Limits = (0.060, 0.075, 0.35, 0.50)
-    solid_thickness_m: Limits = (0.018, 0.030, math.inf, math.inf)
+    upright_height_m: Limits = (0.050, 0.062, 0.35, 0.50)
+    solid_thickness_m: Limits = (0.012, 0.020, math.inf, math.inf)
     tallest_m: float = 0.50
 
     def sides_m(self, stand: Stand) -> Limits:
