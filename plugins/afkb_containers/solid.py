@@ -17,7 +17,7 @@ WHOLE = (0.50, 0.70)
 """Solidity of a hollow body, which may be seen through its handle: rails and chairs fall below."""
 SLENDER = (5.0, 8.0)
 """Height over width: posts and rods are above."""
-PLATE = (0.14, 0.24)
+PLATE = (0.12, 0.20)
 """Thickness over width, as far as seen: books, frames and screens are below; the front of a bottle
 bows more, and a carton shows a side or its top."""
 DEEP = (0.30, 0.45)
