@@ -14,6 +14,7 @@ PARTS = (
     "containers",
     "movability",
     "redkitchen",
+    "robustness",
     "calibration",
     "cost",
 )
