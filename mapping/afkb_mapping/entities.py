@@ -9,8 +9,9 @@ import numpy as np
 from afkb.flow import Entity, NodeKind
 from afkb.inference import Network
 from afkb_mapping.footprint import Outline
+from afkb_mapping.predicted_track import PredictedTrack
 from afkb_mapping.standing import FOOT_HIDDEN_M, STANDS_WITHIN_M, support_of
-from afkb_mapping.tracks import ObservedTrack, PredictedTrack
+from afkb_mapping.tracks import ObservedTrack
 
 EXISTS_FROM = 0.5
 CONVINCING = 0.4

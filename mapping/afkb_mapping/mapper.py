@@ -17,9 +17,10 @@ from afkb_mapping.grounding import fits, ground, joined, same_prediction
 from afkb_mapping.ids import Ids
 from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
+from afkb_mapping.predicted_track import PredictedTrack
 from afkb_mapping.snapshot import MapContent, snapshot
 from afkb_mapping.standing import support_of
-from afkb_mapping.tracks import ObservedTrack, PredictedTrack
+from afkb_mapping.tracks import ObservedTrack
 from afkb_mapping.update_rules import against, update_rule
 from afkb_mapping.visibility import Look, Sight
 

@@ -25,9 +25,10 @@ from afkb_mapping.edges import edges_of
 from afkb_mapping.entities import observed_entities, predicted_entities, supports_expected
 from afkb_mapping.occupancy import rasterise
 from afkb_mapping.places import Place
+from afkb_mapping.predicted_track import PredictedTrack
 from afkb_mapping.room_lookup import RoomLookup, room_id
 from afkb_mapping.rooms import Segmentation, segment_rooms
-from afkb_mapping.tracks import ObservedTrack, PredictedTrack
+from afkb_mapping.tracks import ObservedTrack
 
 SEEN_RELIABLY = ("SupportAbility",)
 """Features whose absence from a visited room says something: their detectors overlook little."""

@@ -61,13 +61,14 @@ def test_one_frame_tells_what_stays_and_what_gets_moved() -> None:
     assert (bed["scale"], mug["scale"]) == ("Large", "Small")
 
 
-def test_a_view_that_does_not_speak_of_a_feature_speaks_against_it() -> None:
+@pytest.mark.parametrize(("range_m", "counts"), [(1.0, True), (4.0, False)])
+def test_only_a_view_from_as_near_speaks_against_by_not_speaking(range_m, counts) -> None:
     association = Association(Ids())
     mug = container(1, 0)
     body = replace(mug, detector="things", affordances={"DisposeAbility": 0.8})
-    for index in range(3):
-        association.match(view(index), [body])
-    (track,) = association.match(view(3), one_per_thing([body, replace(mug, about=0)]))
+    association.match(view(0), one_per_thing([body, replace(mug, about=0)]))
+    (track,) = association.match(view(1), [replace(body, range_m=range_m)])
     assert track is not None and len(association.tracks) == 1
     assert track.affordances["DisposeAbility"] == pytest.approx(0.8)
-    assert track.affordances["ContainAbility"] == pytest.approx((0.9 + 3 * 0.05) / 4)
+    expected = (0.9 + 0.05) / 2 if counts else 0.9
+    assert track.affordances["ContainAbility"] == pytest.approx(expected)
