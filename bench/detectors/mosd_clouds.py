@@ -64,16 +64,23 @@ def _cloud(path: Path) -> Cloud:
         )
     objects = np.where(labels == 0, 0, np.maximum(labels // 10, 1)).astype(np.int32)
     group = next((g for last, g in GROUPS if _number(path) <= last), "mixed")
-    return Cloud(path.stem, group, _placed(points, colours, _number(path)), objects)
+    view = _placed(points, colours, objects == 1, _number(path))
+    return Cloud(path.stem, group, view, objects)
 
 
-def _placed(points: NDArray[np.float64], colours: NDArray[np.uint8] | None, index: int) -> View:
-    """The view that such points (H, W, 3), optical frame, are of, level, its table at TABLE_M."""
+def _placed(
+    points: NDArray[np.float64],
+    colours: NDArray[np.uint8] | None,
+    table: NDArray[np.bool_],
+    index: int,
+) -> View:
+    """The view that such points (H, W, 3), optical frame, are of, level, its `table` at TABLE_M."""
     z = points[..., 2]
     depth = np.where(np.isfinite(z) & (z > 0), z, 0.0).astype(np.float32)
     view = View(index, 0.0, np.eye(4), depth, _camera(points), OPTICAL, color=colours)
     T_map_base = level([view], gravity_aligned=False).T_map_source
-    T_map_base[2, 3] += TABLE_M
+    T = T_map_base @ OPTICAL
+    T_map_base[2, 3] += TABLE_M - float(np.nanmedian(points[table] @ T[2, :3] + T[2, 3]))
     return replace(view, T_map_base=T_map_base)
 
 

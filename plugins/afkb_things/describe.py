@@ -16,11 +16,9 @@ CUT = 0.5
 """How often a body that the image edge cuts is one body as it is seen."""
 
 
-def body_detection(body: Body, attached: float, detector: str) -> Detection | None:
-    """A body from its base up to its top, or None where it is part of something larger."""
-    free = min(1.0, (ATTACHED[1] - attached) / (ATTACHED[1] - ATTACHED[0]))
-    if free <= 0:
-        return None
+def body_detection(body: Body, attached: float, detector: str) -> Detection:
+    """A body from its base up to its top; `attached` is the share of its outline that goes on."""
+    free = min(1.0, max(0.0, (ATTACHED[1] - attached) / (ATTACHED[1] - ATTACHED[0])))
     base, top = body.base_m, percentile(body.points[:, 2], 98.0)
     box = box_around(on_grid(body.points, 0.005), top, 0.0, max(top - base, 0.0))
     spread = body.sigma_m**2 + 1e-4

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import chain
 
 import numpy as np
 
@@ -11,11 +10,13 @@ from afkb.flow import Detection, View
 from afkb_mapping.bodies import Body
 from afkb_mapping.image_regions import pixels_by_label
 from afkb_things.clusters import clusters_from_above
-from afkb_things.describe import body_detection
+from afkb_things.describe import ATTACHED, body_detection
 from afkb_things.hidden import Loose, things_on_hidden_supports, things_on_the_floor
+from afkb_things.rejoin import rejoined
 from afkb_things.scene import Scene
 from afkb_things.settings import ThingSettings
-from afkb_things.surroundings import surroundings
+from afkb_things.split import split
+from afkb_things.surroundings import mark, surroundings
 
 
 class ThingDetector:
@@ -38,25 +39,45 @@ class ThingDetector:
         scene = Scene.of(view, earlier, s)
         if scene is None:
             return []
+        standing = rejoined(list(self._on_supports(scene)), scene)
         loose = Loose.of(scene)
-        bodies = chain(
-            self._on_supports(scene),
-            things_on_hidden_supports(scene, loose, s.min_pixels),
-            things_on_the_floor(scene, loose, s.min_pixels),
-        )
-        mine, found = np.zeros(scene.depth_m.shape, np.int32), []
+        hidden = list(things_on_hidden_supports(scene, loose, s.min_pixels))
+        on_floor = list(things_on_the_floor(scene, loose, s.min_pixels))
+        return [
+            body_detection(body, attached, self.name)
+            for group in (standing, *([b] for b in hidden + on_floor))
+            for body, attached in self._free(group, scene)
+        ]
+
+    def _free(self, bodies: Sequence[Body], scene: Scene) -> Iterator[tuple[Body, float]]:
+        """The bodies that aren't part of something larger, and how far each one's surface goes on.
+
+        Where it goes on into a neighbour that is such a part, it goes on, too.
+        """
+        names = np.zeros(scene.depth_m.shape, np.int32)
         for name, body in enumerate(bodies, start=1):
-            attached, *_ = surroundings(
-                body.u, body.v, scene.depth_m, mine, name, scene.labels, scene.overs_m, s.core_m
-            )
-            detection = body_detection(body, attached, self.name)
-            if detection is not None:
-                found.append(detection)
-        return found
+            mark(body.u, body.v, names, name)
+        kept = dict(enumerate(bodies, start=1))
+        labels = (scene.labels, scene.overs_m, self.settings.core_m)
+        for _ in range(2):
+            attached = {
+                k: surroundings(b.u, b.v, scene.depth_m, names, k, *labels)[0]
+                for k, b in kept.items()
+            }
+            parts = [k for k in kept if attached[k] >= ATTACHED[1]]
+            for k in parts:
+                mark(kept[k].u, kept[k].v, names, 0)
+                del kept[k]
+            if not parts:
+                break
+        for k, body in kept.items():
+            yield body, attached[k]
 
     def _on_supports(self, scene: Scene) -> Iterator[Body]:
         n = len(scene.supports.heights_m) + 1
-        u, v, starts = pixels_by_label(scene.labels, np.ones(n, np.bool_), np.ones(n, np.int64))
+        u, v, starts = pixels_by_label(scene.pools, np.ones(n, np.bool_), np.ones(n, np.int64))
+        groups: list[Body] = []
         for k in np.flatnonzero(np.diff(starts) >= self.settings.min_pixels):
             part = slice(int(starts[k]), int(starts[k + 1]))
-            yield from clusters_from_above(u[part], v[part], scene, int(k) - 1, self.settings)
+            groups += clusters_from_above(u[part], v[part], scene, int(k) - 1, self.settings)
+        yield from split(groups, scene, scene.labels, self.settings.min_pixels)

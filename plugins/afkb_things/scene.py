@@ -12,6 +12,7 @@ from afkb.flow import Detection, View
 from afkb_mapping.depth_points import height_per_depth, intrinsics_of, map_points
 from afkb_mapping.kernels import kernel
 from afkb_things.above import fit_supports, label_things
+from afkb_things.roots import over_roots, roots_of
 from afkb_things.settings import ThingSettings
 from afkb_things.supports import Supports
 
@@ -21,7 +22,8 @@ class Scene:
     """A view, labelled.
 
     - `points`: (H, W, 3) float32, map frame. `labels`: (H, W), see `label_things`.
-    - `overs_m`: (H, W), height of a point over the support that it is labelled with.
+    - `pools`: (H, W), the same with those supports left out that are the tops of things themselves;
+      `overs_m`: (H, W), height of a point over the support of its pool.
     - `intrinsics`: fx, fy, cx, cy. `planes`: (K, 3), see `fit_supports`.
     """
 
@@ -32,6 +34,7 @@ class Scene:
     supports: Supports
     planes: NDArray[np.float64]
     labels: NDArray[np.int16]
+    pools: NDArray[np.int16]
     overs_m: NDArray[np.float32]
 
     @property
@@ -65,7 +68,12 @@ class Scene:
         labels, overs = label_things(
             view.depth_m, points, planes, supports.large, *grid, slope, *settings.above_m
         )
-        return cls(view.depth_m, intrinsics, T, points, supports, planes, labels, overs)
+        roots = roots_of(
+            supports.heights_m, supports.areas_m2, supports.large, supports.raster,
+            settings.above_m[1],
+        )  # fmt: skip
+        pools = over_roots(labels, overs, points, planes, supports.origin_xy, roots)
+        return cls(view.depth_m, intrinsics, T, points, supports, planes, labels, pools, overs)
 
 
 @kernel

@@ -32,6 +32,7 @@ class Supports:
 
     detections: tuple[Detection, ...]
     heights_m: NDArray[np.float64]
+    areas_m2: NDArray[np.float64]
     large: NDArray[np.bool_]
     raster: NDArray[np.uint64]
     origin_xy: NDArray[np.float64]
@@ -45,7 +46,7 @@ class Supports:
         raster, origin = _raster(chosen, earlier)
         walls = [d.segment_xy for d in earlier if d.segment_xy is not None and _is_wall(d)]
         _mark_walls(raster, origin, walls)
-        return cls(tuple(chosen), heights, areas >= LARGE_SUPPORT_M2, raster, origin)
+        return cls(tuple(chosen), heights, areas, areas >= LARGE_SUPPORT_M2, raster, origin)
 
 
 def _raster(

@@ -14,7 +14,7 @@ def surroundings(
     u: NDArray[np.int32],
     v: NDArray[np.int32],
     depth_m: NDArray[np.float32],
-    mine: NDArray[np.int32],
+    names: NDArray[np.int32],
     name: int,
     labels: NDArray[np.int16],
     overs_m: NDArray[np.float32],
@@ -24,18 +24,17 @@ def surroundings(
 
     Attached: the surface goes on, off the support, so that this is a part of something larger.
     What rises less than core_m over the support (overs_m) is its foot, or a cloth below it.
-    `mine` (H, W) gets `name` at the thing's pixels; `labels` (H, W) is negative on supports.
+    `names` (H, W) is `name` at the thing's pixels and that of another thing at its ones, from
+    which an edge parts it; `labels` (H, W) is negative on supports.
     """
     rows, cols = depth_m.shape
-    for k in range(len(u)):
-        mine[v[k], u[k]] = name
     attached = behind = before = missing = total = 0
     for k in range(len(u)):
         z = depth_m[v[k], u[k]]
         jump = 0.015 + 3.0 * depth_sigma(z)
         for du, dv in ((1, 0), (-1, 0), (0, 1), (0, -1)):
             i, j = v[k] + dv, u[k] + du
-            if 0 <= i < rows and 0 <= j < cols and mine[i, j] == name:
+            if 0 <= i < rows and 0 <= j < cols and names[i, j] == name:
                 continue
             # speckle: look a little further for the next pixel that returned
             reach = 1
@@ -45,7 +44,7 @@ def surroundings(
                 total += 1
                 missing += 1
                 continue
-            if mine[i, j] == name:
+            if names[i, j] == name:
                 continue
             total += 1
             other = depth_m[i, j]
@@ -55,9 +54,18 @@ def surroundings(
                 behind += 1
             elif other < z - jump:
                 before += 1
+            elif names[i, j] > 0:
+                behind += 1
             elif labels[i, j] == 0 or (labels[i, j] > 0 and overs_m[i, j] > core_m):
                 attached += 1
             else:
                 behind += 1
     total = max(total, 1)
     return attached / total, behind / total, before / total, missing / total
+
+
+@kernel
+def mark(u: NDArray[np.int32], v: NDArray[np.int32], names: NDArray[np.int32], name: int) -> None:
+    """Write a name at a thing's pixels."""
+    for k in range(len(u)):
+        names[v[k], u[k]] = name

@@ -1,0 +1,234 @@
+"""Parts of one body that something parts in the image: joined again where all agrees."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb_mapping.bodies import Body
+from afkb_mapping.from_above import hull_candidates
+from afkb_mapping.kernels import kernel
+from afkb_mapping.openings import border_lines, find_opening
+from afkb_mapping.order_statistics import percentile
+from afkb_mapping.sensor_noise import depth_sigma
+from afkb_things.scene import Scene
+from afkb_things.surroundings import mark
+
+NEAR_M = 0.03
+"""Parts of one hollow lie this near to each other, seen from above."""
+LEVEL_M = 0.015
+"""Rims of one hollow, and tops of one body, are this level."""
+RIM_SHARE, INSIDE_SHARE = 0.6, 0.5
+"""Of a hollow that parts make together: how far around the rim is seen, and how much of what is
+seen through the rim's plane lies below it; a notch between closed bodies is mostly their tops."""
+LEAST_BEHIND = 5
+"""Pixel pairs in which a part must lie behind what covers its middle."""
+OUTLINE_M, OUTLINE_SHARE = 0.010, 0.85
+"""So near to the outline of both parts, seen from above, must such a share of their sides lie."""
+BELOW_TOP_M = 0.02
+SEEN_THROUGH = 20
+"""Pixels of the support between two parts that show that nothing joins them."""
+
+Hull = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+def rejoined(bodies: Sequence[Body], scene: Scene) -> list[Body]:
+    """The bodies, those joined that are one hollow, or one thing behind another, and filled."""
+    names = np.zeros(scene.depth_m.shape, np.int32)
+    for name, body in enumerate(bodies, start=1):
+        mark(body.u, body.v, names, name)
+    behind = _behind(scene.depth_m, names, len(bodies))
+    kept = [_filled(body, scene, names) for body in bodies]
+    for a in range(len(kept)):
+        for b in range(a + 1, len(kept)):
+            first, second = kept[a], kept[b]
+            if first is None or second is None or not _level(first, second):
+                continue
+            both = _both(first, second)
+            if _touch(first, second):
+                joined = _hollow(both, scene, names)
+            else:
+                covered = (behind[a] >= LEAST_BEHIND) & (behind[b] >= LEAST_BEHIND)
+                joined = both if covered.any() and _is_one(both, first, second, scene) else None
+            if joined is not None:
+                kept[a], kept[b] = None, joined
+                behind[b] += behind[a]
+                break
+    return [body for body in kept if body is not None]
+
+
+def _both(a: Body, b: Body) -> Body:
+    u, v = np.concatenate([a.u, b.u]), np.concatenate([a.v, b.v])
+    order = np.lexsort((u, v))
+    depth = np.concatenate([a.depth_m, b.depth_m])
+    points = np.concatenate([a.points, b.points])
+    return replace(a, u=u[order], v=v[order], depth_m=depth[order], points=points[order])
+
+
+def _level(a: Body, b: Body) -> bool:
+    """Whether both stand on the same support and reach equally high."""
+    if a.support_height_m != b.support_height_m:
+        return False
+    off = percentile(a.points[:, 2], 98.0) - percentile(b.points[:, 2], 98.0)
+    return abs(off) < LEVEL_M + 2.0 * max(a.sigma_m, b.sigma_m)
+
+
+def _touch(a: Body, b: Body) -> bool:
+    """Whether, seen from above, the rectangles around both come near each other."""
+    low = np.maximum(a.points[:, :2].min(axis=0), b.points[:, :2].min(axis=0))
+    high = np.minimum(a.points[:, :2].max(axis=0), b.points[:, :2].max(axis=0))
+    return bool((low - high < NEAR_M).all())
+
+
+def _hollow(body: Body, scene: Scene, names: NDArray[np.int32]) -> Body | None:
+    """A body with its inside, or None where it has no opening that all of it is around."""
+    full = _with_inside(body, scene, names)
+    opening = find_opening(full, scene.camera_xyz)
+    if opening is None or opening.rim_share < RIM_SHARE or opening.inside_share < INSIDE_SHARE:
+        return None
+    return full
+
+
+def _filled(body: Body, scene: Scene, names: NDArray[np.int32]) -> Body | None:
+    """A body with what of its inside was taken for the support, if it is a hollow."""
+    if len(_inside(body, scene, names)[0]) < SEEN_THROUGH:
+        return body
+    return _hollow(body, scene, names) or body
+
+
+def _inside(
+    body: Body, scene: Scene, names: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Pixels of no body that are seen from above within a body's outline, away from its border."""
+    return _seen_down(scene, names > 0, body, _hull(body))
+
+
+def _seen_down(
+    scene: Scene, taken: NDArray[np.bool_], body: Body, hull: Hull
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Pixels that aren't taken, whose sight lines come down through a body's top within a hull."""
+    margin, top = OUTLINE_M + 2.0 * body.sigma_m, percentile(body.points[:, 2], 98.0)
+    return _through(
+        scene.points, scene.depth_m, taken, body.image_box, *hull, margin, scene.camera_xyz, top
+    )
+
+
+def _with_inside(body: Body, scene: Scene, names: NDArray[np.int32]) -> Body:
+    u, v = _inside(body, scene, names)
+    if not len(u):
+        return body
+    depths, points = scene.at(u, v)
+    a, b, c = body.slope
+    points[:, 2] -= a * points[:, 0] + b * points[:, 1] + c
+    return _both(body, replace(body, u=u, v=v, depth_m=depths, points=points))
+
+
+def _hull(body: Body) -> Hull:
+    """Border lines of a body's outline, seen from above."""
+    corners = cv2.convexHull(hull_candidates(body.points)).reshape(-1, 2)
+    return border_lines(corners.astype(np.float64))
+
+
+def _is_one(both: Body, a: Body, b: Body, scene: Scene) -> bool:
+    """Whether two parts lie on the outline of one solid, and no support is seen between them."""
+    hull = _hull(both)
+    margin = OUTLINE_M + 2.0 * both.sigma_m
+    top = percentile(both.points[:, 2], 98.0) - BELOW_TOP_M
+    if min(_share_on(p.points, top, *hull, margin) for p in (a, b)) < OUTLINE_SHARE:
+        return False
+    u, _ = _seen_down(scene, scene.labels >= 0, both, hull)
+    return len(u) < SEEN_THROUGH
+
+
+@kernel
+def _share_on(
+    points: NDArray[np.float64],
+    top_m: float,
+    normals: NDArray[np.float64],
+    offsets: NDArray[np.float64],
+    margin: float,
+) -> float:
+    """Share of the points (N, 3) below a height that lie on the border of a convex outline."""
+    near = total = 0
+    for k in range(len(points)):
+        if points[k, 2] > top_m:
+            continue
+        total += 1
+        near += _inwards(points[k, 0], points[k, 1], normals, offsets) < margin
+    return near / total if total else 1.0
+
+
+@kernel
+def _inwards(
+    x: float, y: float, normals: NDArray[np.float64], offsets: NDArray[np.float64]
+) -> float:
+    """How far within a convex outline a point lies, m; below 0 outside."""
+    least = 1e9
+    for k in range(len(offsets)):
+        least = min(least, x * normals[k, 0] + y * normals[k, 1] - offsets[k])
+    return least
+
+
+@kernel
+def _through(
+    points: NDArray[np.float32],
+    depth_m: NDArray[np.float32],
+    taken: NDArray[np.bool_],
+    box: tuple[int, int, int, int],
+    normals: NDArray[np.float64],
+    offsets: NDArray[np.float64],
+    margin: float,
+    camera_xyz: NDArray[np.float64],
+    top_m: float,
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Columns and rows of pixels that aren't taken and seen through an outline at a height.
+
+    They and their sight lines, where these pass that height, lie within it by a margin, m.
+    """
+    u0, v0, u1, v1 = box
+    us = np.empty((u1 - u0) * (v1 - v0), np.int32)
+    vs = np.empty_like(us)
+    n, drop = 0, camera_xyz[2] - top_m
+    for v in range(v0, v1):
+        for u in range(u0, u1):
+            if taken[v, u] or depth_m[v, u] <= 0 or drop <= 0:
+                continue
+            x, y, h = points[v, u]
+            if h >= top_m or _inwards(x, y, normals, offsets) <= margin:
+                continue
+            t = drop / (camera_xyz[2] - h)
+            x, y = camera_xyz[0] + (x - camera_xyz[0]) * t, camera_xyz[1] + (y - camera_xyz[1]) * t
+            if _inwards(x, y, normals, offsets) > margin:
+                us[n], vs[n] = u, v
+                n += 1
+    return us[:n], vs[:n]
+
+
+@kernel
+def _behind(
+    depth_m: NDArray[np.float32], names: NDArray[np.int32], count: int
+) -> NDArray[np.int64]:
+    """In how many pixel pairs body p lies behind its neighbour q: (count, count)."""
+    rows, cols = names.shape
+    out = np.zeros((count, count), np.int64)
+    for v in range(rows):
+        for u in range(cols):
+            p = names[v, u]
+            if p == 0:
+                continue
+            z = depth_m[v, u]
+            for dv, du in ((0, 1), (1, 0), (0, -1), (-1, 0)):
+                b, a = v + dv, u + du
+                reach = 1
+                while 0 <= b < rows and 0 <= a < cols and depth_m[b, a] <= 0 and reach < 6:
+                    b, a, reach = b + dv, a + du, reach + 1
+                if not (0 <= b < rows and 0 <= a < cols):
+                    continue
+                q = names[b, a]
+                if q != 0 and q != p and depth_m[b, a] < z - 0.015 - 3.0 * depth_sigma(z):
+                    out[p - 1, q - 1] += 1
+    return out

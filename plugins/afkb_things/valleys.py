@@ -1,0 +1,111 @@
+"""Where surfaces meet in a valley: the concave edges at which one body ends and another begins.
+
+Bodies that touch meet in concave edges, while the edges of one simple body are convex (Stein et
+al., Object Partitioning using Local Convexity, CVPR 2014). The inverse of depth is linear over the
+image of any plane, so that its second difference is free of slant: it is positive in a valley.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb_mapping.kernels import kernel
+from afkb_mapping.sensor_noise import depth_sigma
+
+ARM_M = 0.010
+"""Half of the width over which an edge is looked for, m, where noise doesn't ask for more."""
+ARM_SIGMAS = 5.6
+STEEPNESS = 0.22
+"""Depth of a valley over its arm: two faces that turn towards each other by 25 degrees."""
+STEEPEST = 4.0
+"""A surface that falls away faster per arm is another one: the sight line grazes it."""
+LEAST_ARM_PX, MOST_ARM_PX = 3, 40
+SMOOTHED = 2
+"""Means are over squares of this many pixels to either side."""
+DIRECTIONS = ((0, 1), (1, 0), (1, 1), (1, -1))
+
+
+@kernel
+def valleys(
+    depth_m: NDArray[np.float32],
+    pools: NDArray[np.int32],
+    box: tuple[int, int, int, int],
+    focal_px: float,
+) -> NDArray[np.float32]:
+    """How deep a valley each pixel lies in: (H, W), 1 where it is an edge, below 0 on ridges.
+
+    `pools` (H, W) is above 0 where something stands; only pixels of one pool are compared.
+    """
+    u0, v0, u1, v1 = box
+    means = _inverse_means(depth_m, pools, box)
+    out = np.zeros(depth_m.shape, np.float32)
+    for v in range(v0, v1):
+        for u in range(u0, u1):
+            here = means[v, u]
+            if here <= 0:
+                continue
+            z = 1.0 / here
+            arm = max(ARM_M, ARM_SIGMAS * depth_sigma(z))
+            px = int(min(max(round(arm * focal_px / z), LEAST_ARM_PX), MOST_ARM_PX))
+            arm = px * z / focal_px
+            deepest = -1e9
+            for dv, du in DIRECTIONS:
+                far = arm * (math.sqrt(2.0) if du != 0 and dv != 0 else 1.0)
+                rise = _second_difference(means, pools, u, v, du * px, dv * px, far, box)
+                deepest = max(deepest, rise * z * z / (STEEPNESS * far))
+            out[v, u] = deepest if deepest > -1e8 else 0.0
+    return out
+
+
+@kernel
+def _second_difference(
+    means: NDArray[np.float32],
+    pools: NDArray[np.int32],
+    u: int,
+    v: int,
+    du: int,
+    dv: int,
+    arm_m: float,
+    box: tuple[int, int, int, int],
+) -> float:
+    """Mean of two means to either side less that in the middle, 1/m; -1e9 where one is lost."""
+    u0, v0, u1, v1 = box
+    a, b = u + du, v + dv
+    c, d = u - du, v - dv
+    if min(a, c) < u0 or max(a, c) >= u1 or min(b, d) < v0 or max(b, d) >= v1:
+        return -1e9
+    if pools[b, a] != pools[v, u] or pools[d, c] != pools[v, u]:
+        return -1e9
+    first, second, here = means[b, a], means[d, c], means[v, u]
+    if first <= 0 or second <= 0:
+        return -1e9
+    if max(abs(1.0 / first - 1.0 / here), abs(1.0 / second - 1.0 / here)) > STEEPEST * arm_m:
+        return -1e9
+    return 0.5 * (first + second) - here
+
+
+@kernel
+def _inverse_means(
+    depth_m: NDArray[np.float32], pools: NDArray[np.int32], box: tuple[int, int, int, int]
+) -> NDArray[np.float32]:
+    """Mean inverse depth (H, W) of each pixel's square in its pool, 1/m; 0 where there is none."""
+    u0, v0, u1, v1 = box
+    out = np.zeros(depth_m.shape, np.float32)
+    for v in range(v0, v1):
+        for u in range(u0, u1):
+            pool, z = pools[v, u], depth_m[v, u]
+            if pool <= 0 or z <= 0:
+                continue
+            near = 0.015 + 3.0 * depth_sigma(z)
+            total, count = 0.0, 0
+            for b in range(max(v - SMOOTHED, v0), min(v + SMOOTHED + 1, v1)):
+                for a in range(max(u - SMOOTHED, u0), min(u + SMOOTHED + 1, u1)):
+                    other = depth_m[b, a]
+                    if pools[b, a] == pool and abs(other - z) < near:
+                        total, count = total + 1.0 / other, count + 1
+            if count >= 3:
+                out[v, u] = total / count
+    return out
