@@ -9,8 +9,8 @@ from afkb_mapping.kernels import kernel
 from afkb_mapping.sensor_noise import depth_sigma
 
 Box = tuple[int, int, int, int]
-LEAST_PIXELS = 40
-"""A smooth patch of fewer pixels may be noise."""
+LEAST_PIXELS = 12
+"""A smooth patch of fewer cells may be noise."""
 EDGE = 1.0
 """Depth of a valley from which it parts two patches."""
 NEIGHBOURS = ((0, 1), (1, 0), (0, -1), (-1, 0))
@@ -114,13 +114,15 @@ def contacts(
     count: int,
     box: Box,
 ) -> NDArray[np.float64]:
-    """How the patches of a pool meet: (count + 1, count + 1, 3), symmetric.
+    """How the patches of a pool meet: (count + 1, count + 1, 5).
 
-    Number of pixel pairs on one surface, the sum of the deeper one's valley over these, and the
-    number of pairs where one lies behind the other.
+    Number of pixel pairs on one surface, the sum of the deeper one's valley over these (both
+    symmetric), the number of pairs in which the first lies behind the second, and the first and
+    the last column of all pairs, the first as a negative number.
     """
     u0, v0, u1, v1 = box
-    out = np.zeros((count + 1, count + 1, 3))
+    out = np.zeros((count + 1, count + 1, 5))
+    out[..., 3:] = -1e9
     for v in range(v0, v1):
         for u in range(u0, u1):
             if pools[v, u] != pool:
@@ -135,9 +137,12 @@ def contacts(
                 if b >= v1 or a >= u1 or pools[b, a] != pool or patches[b, a] == p:
                     continue
                 q = patches[b, a]
-                if abs(depth_m[b, a] - z) > jump:
-                    out[p, q, 2] += 1
+                for f, s in ((p, q), (q, p)):
+                    out[f, s, 3], out[f, s, 4] = max(out[f, s, 3], -u), max(out[f, s, 4], a)
+                if depth_m[b, a] > z + jump:
                     out[q, p, 2] += 1
+                elif depth_m[b, a] < z - jump:
+                    out[p, q, 2] += 1
                 else:
                     deep = max(valley[v, u], valley[b, a])
                     out[p, q, 0] += 1

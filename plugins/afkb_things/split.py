@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -11,21 +10,17 @@ from numpy.typing import NDArray
 
 from afkb_mapping.bodies import Body
 from afkb_mapping.image_regions import extent, order_by_label
-from afkb_mapping.kernels import kernel
 from afkb_mapping.openings import find_opening
-from afkb_mapping.sensor_noise import depth_sigma
+from afkb_things.cells import cell_size, cells_of, of_pixels
+from afkb_things.parts import BEHIND, TOUCH, Parts, measures_of
 from afkb_things.patches import contacts, patches_of
 from afkb_things.rejoin import INSIDE_SHARE, RIM_SHARE
 from afkb_things.scene import Scene
+from afkb_things.surroundings import mark
 from afkb_things.valleys import valleys
 
-SMOOTH = 0.5
-"""Mean depth of the valley in which two patches meet, below which they are of one body."""
-LEAST_CONTACT = 3
 MOST_PATCHES = 150
 """More patches in one pool are noise that no edge can be told from."""
-BODY_M = (0.04, 0.025)
-"""Length and middle side from which a part is a body of its own; caps, knobs and handles aren't."""
 
 
 def split(
@@ -36,137 +31,75 @@ def split(
         return
     pools = np.zeros(scene.depth_m.shape, np.int32)
     for name, body in enumerate(bodies, start=1):
-        pools[body.v, body.u] = name
-    whole = extent(np.concatenate([b.u for b in bodies]), np.concatenate([b.v for b in bodies]))
-    valley = valleys(scene.depth_m, pools, whole, float(scene.intrinsics[0]))
-    patches = np.zeros(scene.depth_m.shape, np.int32)
+        mark(body.u, body.v, pools, name)
+    focal = float(scene.intrinsics[0])
+    size = cell_size(focal)
+    depth, of, kind = cells_of(scene.depth_m, pools, kinds, size)
+    valley = valleys(depth, of, focal / size)
+    patches = np.zeros(depth.shape, np.int32)
     for name, body in enumerate(bodies, start=1):
-        box = body.image_box
-        count = patches_of(scene.depth_m, pools, name, kinds, valley, box, patches)
+        u0, v0, u1, v1 = extent(body.u, body.v)
+        box = (u0 // size, v0 // size, -(-u1 // size), -(-v1 // size))
+        box = (*box[:2], min(box[2], depth.shape[1]), min(box[3], depth.shape[0]))
+        count = patches_of(depth, of, name, kind, valley, box, patches)
         if not 1 < count <= MOST_PATCHES:
             yield body
             continue
-        meet = contacts(scene.depth_m, pools, name, patches, valley, count, box)
-        parts = _Parts(body, patches[body.v, body.u], meet, scene.camera_xyz, min_pixels)
-        yield from parts.joined()
+        meet = contacts(depth, of, name, patches, valley, count, box)
+        own = of_pixels(body.u, body.v, body.depth_m, name, of, depth, patches, size)
+        measures = measures_of(own, body.u, body.depth_m, body.points, count)
+        yield from _bodies(body, own, Parts(measures, meet, body.base_m, min_pixels, size), scene)
 
 
-class _Parts:
-    """Patches of one group, joined until those that are left are bodies."""
+def _bodies(body: Body, own: NDArray[np.int32], parts: Parts, scene: Scene) -> Iterator[Body]:
+    """The bodies that a group is made of; the group itself where it is one."""
+    parts.join_smooth()
+    parts.join_small()
+    parts.join_floating()
+    if len(parts.kept) > 1 and _is_hollow(body, scene):
+        yield body
+        return
+    while len(parts.kept) > 1:
+        found = _hollow_pair(body, own, parts, scene)
+        if found is None:
+            break
+        parts.join(*found)
+    if len(parts.kept) <= 1:
+        yield body
+        return
+    order, starts = order_by_label(parts.became[own], np.ones(len(parts.became), np.bool_))
+    for k in parts.kept:
+        yield _part(body, order[starts[k] : starts[k + 1]])
 
-    def __init__(
-        self,
-        body: Body,
-        of: NDArray[np.int32],
-        meet: NDArray[np.float64],
-        camera_xyz: NDArray[np.float64],
-        min_pixels: int,
-    ) -> None:
-        self.body, self.meet, self.camera_xyz = body, meet, camera_xyz
-        self.min_pixels = min_pixels
-        order, starts = order_by_label(of, np.ones(len(meet), np.bool_))
-        self.index = {
-            k: order[starts[k] : starts[k + 1]]
-            for k in range(1, len(meet))
-            if starts[k + 1] > starts[k]
-        }
 
-    def joined(self) -> Iterator[Body]:
-        """The bodies; the group itself where it is one."""
-        self._join_smooth()
-        self._join_small()
-        self._join_hollow()
-        if len(self.index) <= 1:
-            yield self.body
-            return
-        for index in self.index.values():
-            yield self._part(index)
-
-    def _join(self, a: int, b: int) -> None:
-        """Make b a part of a."""
-        self.index[a] = np.sort(np.concatenate([self.index[a], self.index.pop(b)]))
-        self.meet[a] += self.meet[b]
-        self.meet[:, a] += self.meet[:, b]
-        self.meet[b] = self.meet[:, b] = 0
-        self.meet[a, a] = 0
-
-    def _join_smooth(self) -> None:
-        while True:
-            touching, depth = self.meet[..., 0], self.meet[..., 1]
-            mean = np.where(touching >= LEAST_CONTACT, depth / np.maximum(touching, 1), math.inf)
-            a, b = np.unravel_index(int(np.argmin(mean)), mean.shape)
-            if not mean[a, b] < SMOOTH:
-                return
-            self._join(int(a), int(b))
-
-    def _join_small(self) -> None:
-        """What is too small for a body belongs to what it touches most, or else to the nearest."""
-        for k in sorted(self.index, key=lambda k: len(self.index[k])):
-            if len(self.index) == 1 or self._is_body(self.index[k]):
+def _hollow_pair(
+    body: Body, own: NDArray[np.int32], parts: Parts, scene: Scene
+) -> tuple[int, int] | None:
+    """Two parts that make a hollow only together: the front of a cup and its inside behind."""
+    met = parts.meet[..., TOUCH] + parts.meet[..., BEHIND]
+    of = parts.became[own]
+    for a in parts.kept:
+        for b in parts.kept:
+            if a >= b or met[a, b] + met[b, a] == 0:
                 continue
-            near = self.meet[k, :, 0] + 0.01 * self.meet[k, :, 2]
-            self._join(int(near.argmax()) if near.max() > 0 else self._nearest(k), k)
-
-    def _nearest(self, k: int) -> int:
-        middle = self.body.points[self.index[k]].mean(axis=0)
-        apart = {
-            j: float(np.abs(self.body.points[index[:: len(index) // 50 + 1]] - middle).sum(1).min())
-            for j, index in self.index.items()
-            if j != k
-        }
-        return min(apart, key=lambda j: apart[j])
-
-    def _is_body(self, index: NDArray[np.int64]) -> bool:
-        if len(index) < self.min_pixels:
-            return False
-        middle, longest = _two_sides(self.body.points, self.body.depth_m, index)
-        return longest >= BODY_M[0] and middle >= BODY_M[1]
-
-    def _join_hollow(self) -> None:
-        """Join what makes a hollow only together: the front of a cup and its inside behind."""
-        again = True
-        while again:
-            again = False
-            for a, b in self._pairs():
-                if self._are_hollow(a, b):
-                    self._join(a, b)
-                    again = True
-                    break
-
-    def _pairs(self) -> list[tuple[int, int]]:
-        names = sorted(self.index)
-        met = self.meet[..., 0] + self.meet[..., 2] > 0
-        return [(a, b) for a in names for b in names if a < b and met[a, b]]
-
-    def _are_hollow(self, a: int, b: int) -> bool:
-        both = self._part(np.sort(np.concatenate([self.index[a], self.index[b]])))
-        opening = find_opening(both, self.camera_xyz)
-        if opening is None or opening.rim_share < RIM_SHARE:
-            return False
-        return opening.inside_share >= INSIDE_SHARE
-
-    def _part(self, index: NDArray[np.int64]) -> Body:
-        b = self.body
-        return replace(
-            b, u=b.u[index], v=b.v[index], depth_m=b.depth_m[index], points=b.points[index]
-        )
+            both = _part(body, np.flatnonzero((of == a) | (of == b)))
+            if _is_hollow(both, scene):
+                return a, b
+    return None
 
 
-@kernel
-def _two_sides(
-    points: NDArray[np.float64], depth_m: NDArray[np.float32], index: NDArray[np.int64]
-) -> tuple[float, float]:
-    """Middle and longest side of a box of such spread as some points have less the noise, m."""
-    n = len(index)
-    centre, spread, sigma = np.zeros(3), np.zeros((3, 3)), 0.0
-    for k in index:
-        centre += points[k] / n
-        sigma += depth_sigma(depth_m[k]) / n
-    for k in index:
-        off = points[k] - centre
-        for i in range(3):
-            for j in range(3):
-                spread[i, j] += off[i] * off[j] / n
-    own = np.linalg.eigvalsh(spread)
-    middle = math.sqrt(12.0 * max(own[1] - sigma * sigma, 0.0))
-    return middle, math.sqrt(12.0 * max(own[2] - sigma * sigma, 0.0))
+def _is_hollow(body: Body, scene: Scene) -> bool:
+    opening = find_opening(body, scene.camera_xyz)
+    if opening is None:
+        return False
+    return opening.rim_share >= RIM_SHARE and opening.inside_share >= INSIDE_SHARE
+
+
+def _part(body: Body, index: NDArray[np.int64]) -> Body:
+    return replace(
+        body,
+        u=body.u[index],
+        v=body.v[index],
+        depth_m=body.depth_m[index],
+        points=body.points[index],
+    )

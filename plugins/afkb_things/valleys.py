@@ -3,6 +3,7 @@
 Bodies that touch meet in concave edges, while the edges of one simple body are convex (Stein et
 al., Object Partitioning using Local Convexity, CVPR 2014). The inverse of depth is linear over the
 image of any plane, so that its second difference is free of slant: it is positive in a valley.
+The pixels here are cells, see `cells.py`.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ STEEPNESS = 0.22
 """Depth of a valley over its arm: two faces that turn towards each other by 25 degrees."""
 STEEPEST = 4.0
 """A surface that falls away faster per arm is another one: the sight line grazes it."""
-LEAST_ARM_PX, MOST_ARM_PX = 3, 40
-SMOOTHED = 2
+LEAST_ARM_PX, MOST_ARM_PX = 2, 20
+SMOOTHED = 1
 """Means are over squares of this many pixels to either side."""
 DIRECTIONS = ((0, 1), (1, 0), (1, 1), (1, -1))
 
@@ -32,18 +33,17 @@ DIRECTIONS = ((0, 1), (1, 0), (1, 1), (1, -1))
 def valleys(
     depth_m: NDArray[np.float32],
     pools: NDArray[np.int32],
-    box: tuple[int, int, int, int],
     focal_px: float,
 ) -> NDArray[np.float32]:
     """How deep a valley each pixel lies in: (H, W), 1 where it is an edge, below 0 on ridges.
 
     `pools` (H, W) is above 0 where something stands; only pixels of one pool are compared.
     """
-    u0, v0, u1, v1 = box
-    means = _inverse_means(depth_m, pools, box)
+    rows, cols = pools.shape
+    means = _inverse_means(depth_m, pools)
     out = np.zeros(depth_m.shape, np.float32)
-    for v in range(v0, v1):
-        for u in range(u0, u1):
+    for v in range(rows):
+        for u in range(cols):
             here = means[v, u]
             if here <= 0:
                 continue
@@ -54,7 +54,7 @@ def valleys(
             deepest = -1e9
             for dv, du in DIRECTIONS:
                 far = arm * (math.sqrt(2.0) if du != 0 and dv != 0 else 1.0)
-                rise = _second_difference(means, pools, u, v, du * px, dv * px, far, box)
+                rise = _second_difference(means, pools, u, v, du * px, dv * px, far)
                 deepest = max(deepest, rise * z * z / (STEEPNESS * far))
             out[v, u] = deepest if deepest > -1e8 else 0.0
     return out
@@ -69,13 +69,12 @@ def _second_difference(
     du: int,
     dv: int,
     arm_m: float,
-    box: tuple[int, int, int, int],
 ) -> float:
     """Mean of two means to either side less that in the middle, 1/m; -1e9 where one is lost."""
-    u0, v0, u1, v1 = box
+    rows, cols = pools.shape
     a, b = u + du, v + dv
     c, d = u - du, v - dv
-    if min(a, c) < u0 or max(a, c) >= u1 or min(b, d) < v0 or max(b, d) >= v1:
+    if min(a, c) < 0 or max(a, c) >= cols or min(b, d) < 0 or max(b, d) >= rows:
         return -1e9
     if pools[b, a] != pools[v, u] or pools[d, c] != pools[v, u]:
         return -1e9
@@ -88,24 +87,22 @@ def _second_difference(
 
 
 @kernel
-def _inverse_means(
-    depth_m: NDArray[np.float32], pools: NDArray[np.int32], box: tuple[int, int, int, int]
-) -> NDArray[np.float32]:
+def _inverse_means(depth_m: NDArray[np.float32], pools: NDArray[np.int32]) -> NDArray[np.float32]:
     """Mean inverse depth (H, W) of each pixel's square in its pool, 1/m; 0 where there is none."""
-    u0, v0, u1, v1 = box
+    rows, cols = pools.shape
     out = np.zeros(depth_m.shape, np.float32)
-    for v in range(v0, v1):
-        for u in range(u0, u1):
+    for v in range(rows):
+        for u in range(cols):
             pool, z = pools[v, u], depth_m[v, u]
             if pool <= 0 or z <= 0:
                 continue
             near = 0.015 + 3.0 * depth_sigma(z)
             total, count = 0.0, 0
-            for b in range(max(v - SMOOTHED, v0), min(v + SMOOTHED + 1, v1)):
-                for a in range(max(u - SMOOTHED, u0), min(u + SMOOTHED + 1, u1)):
+            for b in range(max(v - SMOOTHED, 0), min(v + SMOOTHED + 1, rows)):
+                for a in range(max(u - SMOOTHED, 0), min(u + SMOOTHED + 1, cols)):
                     other = depth_m[b, a]
                     if pools[b, a] == pool and abs(other - z) < near:
                         total, count = total + 1.0 / other, count + 1
-            if count >= 3:
+            if count >= 2:
                 out[v, u] = total / count
     return out
