@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from afkb_mapping.bodies import Body
 from afkb_mapping.from_above import hull_candidates
 from afkb_mapping.kernels import kernel
-from afkb_mapping.openings import border_lines, find_opening
+from afkb_mapping.opening_kernels import border_lines
+from afkb_mapping.openings import find_opening
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
 from afkb_things.scene import Scene
