@@ -117,7 +117,8 @@ class Association:
         tracks = [t for t in self.tracks if not t.is_surface]
         if not tracks or not detections:
             return [None] * len(detections)
-        cost = np.array([[_distance(t, d) for t in tracks] for d in detections])
+        middles = np.array([t.footprint.box().mean(axis=0) for t in tracks])
+        cost = np.array([_distances(tracks, middles, d) for d in detections])
         rows, columns = linear_sum_assignment(cost)
         found: list[ObservedTrack | None] = [None] * len(detections)
         for row, column in zip(rows, columns, strict=True):
@@ -130,8 +131,10 @@ class Association:
         for same in (_same_thing, _same_surface):
             tracks = [t for t in self.tracks if t.is_surface is (same is _same_surface)]
             for i, first in enumerate(tracks):
-                for second in tracks[i + 1 :]:
-                    if first in self.tracks and second in self.tracks and same(first, second):
+                if first not in self.tracks:
+                    continue
+                for second in (t for t in tracks[i + 1 :] if t in self.tracks):
+                    if _may_touch(first, second) and same(first, second):
                         self._absorb(first, second)
 
 
@@ -180,25 +183,29 @@ def _overlap_in_height(track: ObservedTrack, bottom: float, top: float) -> bool:
     )
 
 
-def _distance(track: ObservedTrack, detection: Detection) -> float:
-    """Distance of the centres (m) if both may be one thing, else FAR_M."""
+def _distances(
+    tracks: Sequence[ObservedTrack], middles: NDArray[np.float64], detection: Detection
+) -> NDArray[np.float64]:
+    """Distance (m) of each track's middle (N, 2) if both may be one thing, else FAR_M: (N,)."""
     box = detection.box
-    center = np.asarray(box.center_xyz[:2])
-    outline = _center_of(track.footprint)
-    apart = float(np.hypot(*(center - outline)))
+    apart = np.hypot(*(middles - np.asarray(box.center_xyz[:2])).T)
     # Two solid things can't come nearer to each other than their width.
     width = sum(box.size_xyz[:2]) / 2
     gate = max(THING_REACH_M, width) + 2 * float(np.sqrt(detection.covariance_xyz[0, 0]))
-    if apart > gate or not _overlap_in_height(track, box.bottom, box.top):
-        return FAR_M
-    shared = track.footprint.share_within(detection.footprint_xy, THING_CELL_M)
-    return apart * (1.5 - shared)
+    found = np.full(len(tracks), FAR_M)
+    for i in np.flatnonzero(apart <= gate).tolist():
+        if _overlap_in_height(tracks[i], box.bottom, box.top):
+            shared = tracks[i].footprint.share_within(detection.footprint_xy, THING_CELL_M)
+            found[i] = apart[i] * (1.5 - shared)
+    return found
 
 
-def _center_of(footprint: Footprint) -> NDArray[np.float64]:
-    points = footprint.points()
-    middle: NDArray[np.float64] = (points.min(axis=0) + points.max(axis=0)) / 2
-    return middle
+def _may_touch(first: ObservedTrack, second: ObservedTrack) -> bool:
+    """Whether the boxes around two footprints come as near as one thing's parts may."""
+    (low, high), (other_low, other_high) = first.footprint.box(), second.footprint.box()
+    return bool(
+        (low <= other_high + THING_REACH_M).all() and (other_low <= high + THING_REACH_M).all()
+    )
 
 
 def _same_thing(first: ObservedTrack, second: ObservedTrack) -> bool:

@@ -39,6 +39,7 @@ class Footprint:
         self._hits = np.zeros((0, 0), dtype=np.uint16)
         self._near: dict[int, NDArray[np.uint8]] = {}
         self._points: NDArray[np.float64] | None = None
+        self._box: NDArray[np.float64] | None = None
 
     def __bool__(self) -> bool:
         return bool(self._hits.any())
@@ -83,7 +84,7 @@ class Footprint:
     def _forget(self) -> None:
         """Drop what was derived from the counts, since they change."""
         self._near.clear()
-        self._points = None
+        self._points = self._box = None
 
     def mask(self, margin: int = 0) -> NDArray[np.uint8]:
         """Cells that were seen often enough, with `margin` empty cells around."""
@@ -132,6 +133,13 @@ class Footprint:
             centers = (np.argwhere(self.mask()) + self._low).astype(np.float64) + 0.5
             self._points = np.asarray(centers * self.cell_m, dtype=np.float64)
         return self._points
+
+    def box(self) -> NDArray[np.float64]:
+        """(2, 2) lower left and upper right corner around the centres of its cells, m."""
+        if self._box is None:
+            points = self.points()
+            self._box = np.array([points.min(axis=0), points.max(axis=0)])
+        return self._box
 
     def outline(self) -> Outline:
         """Rectangle and polygon around it, gaps up to a few cells closed.
