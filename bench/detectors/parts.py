@@ -16,6 +16,7 @@ PARTS = (
     "redkitchen",
     "robustness",
     "calibration",
+    "doorways",
     "cost",
 )
 """Each is a module of this package."""

@@ -1,0 +1,143 @@
+"""What an occupancy grid says of a passage: how far the way round it is, and whether it is narrow.
+
+A gap between a cabinet and the wall behind it is as wide as a door. But one walks round the
+cabinet in a few steps, and out of a room by its doors only.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from afkb.flow import OccupancyGrid
+from afkb_mapping.free_space import FREE_BELOW
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+DETOUR_M = (2.5, 4.0)
+"""Way round a passage: furniture needs less than the first, a wall with a door more than the
+second."""
+BESIDE_M = 0.4
+"""Where the way round begins and ends: this far from the line between the jambs."""
+POCKET_M2 = 0.3
+"""A dead end with less room than this to stand in, clear of its walls, is a niche."""
+CLEARANCE_M = 0.2
+"""A way goes where this much is free to either side: nobody walks through a narrower slit."""
+WINDOW_M = 5.0
+"""Nothing further away is looked at."""
+WIDER = 1.3
+"""A door is narrower than what it leads from or to: there the way is this much as wide."""
+SHIFTS_M = (0.4, 0.6, 0.8)
+LEFT_OVER = 0.3
+"""What a gap keeps of its probability in a corridor no wider before it and behind."""
+
+
+def way_free(grid: OccupancyGrid, blocked: Mask) -> Mask:
+    """(rows, cols) free cells, without those where depth saw what a laser looks under."""
+    with np.errstate(invalid="ignore"):
+        free: Mask = (grid.probability < FREE_BELOW) & ~blocked
+    return free
+
+
+def room_to_room(jambs_xy: Array, free_cells: Mask, grid: OccupancyGrid) -> float:
+    """How well a gap between jambs (2, 2), m, parts two areas of free cells, 0 to 1."""
+    free, origin = _window(jambs_xy, free_cells, grid)
+    resolution = grid.resolution_m
+    along = jambs_xy[1] - jambs_xy[0]
+    width = float(np.linalg.norm(along))
+    normal = np.array([-along[1], along[0]]) / width
+    jambs = (jambs_xy - origin) / resolution
+    round_ = _way_round(free, jambs, normal * BESIDE_M / resolution, resolution)
+    short, long = DETOUR_M
+    parted = min(1.0, max(0.0, (round_ - short) / (long - short)))
+    sides = [
+        max(_width_at(free, jambs, sign * shift * normal / resolution) for shift in SHIFTS_M)
+        for sign in (-1, 1)
+    ]
+    is_narrow = max(sides) * resolution >= WIDER * width
+    return parted * (1.0 if is_narrow else LEFT_OVER)
+
+
+def _window(jambs_xy: Array, free_cells: Mask, grid: OccupancyGrid) -> tuple[Mask, Array]:
+    """Free cells around a gap, and where (m) the corner of the first one is."""
+    origin, resolution = np.array(grid.origin_xy), grid.resolution_m
+    low = np.floor((jambs_xy.min(axis=0) - WINDOW_M - origin) / resolution).astype(int)
+    high = np.ceil((jambs_xy.max(axis=0) + WINDOW_M - origin) / resolution).astype(int)
+    low = np.maximum(low, 0)
+    free = free_cells[low[1] : max(high[1], 0), low[0] : max(high[0], 0)]
+    return np.pad(free, 1), origin + (low - 1) * resolution
+
+
+def _way_round(free: Mask, jambs: Array, beside: Array, resolution: float) -> float:
+    """Length of the shortest free way from one side of a gap to the other but through it, m.
+
+    0 where a side is not free or but a niche; inf where there is none in the window.
+    """
+    import cv2
+
+    wall = np.zeros(free.shape, dtype=np.uint8)
+    step = (jambs[1] - jambs[0]) / np.linalg.norm(jambs[1] - jambs[0]) * 2
+    ends = np.round(np.array([jambs[0] - step, jambs[1] + step]) - 0.5).astype(int)
+    cv2.line(wall, ends[0].tolist(), ends[1].tolist(), 1, lineType=cv2.LINE_4, thickness=2)
+    roomy = ndimage.distance_transform_edt(free) * resolution > CLEARANCE_M
+    open_ = roomy & (wall == 0)
+    middle = jambs.mean(axis=0)
+    start, goal = (_free_near(open_, middle + sign * beside) for sign in (1, -1))
+    if start is None or goal is None:
+        return 0.0
+    parts, _ = ndimage.label(open_)
+    least = POCKET_M2 / resolution**2
+    if any((parts == parts[cell]).sum() < least for cell in (start, goal)):
+        return 0.0
+    if parts[start] != parts[goal]:
+        return math.inf
+    return _distance(open_, start, goal) * resolution
+
+
+def _free_near(open_: Mask, xy: Array) -> tuple[int, int] | None:
+    """The free cell (row, column) nearest to a point, within a few cells."""
+    reach = 6
+    row, col = int(xy[1]), int(xy[0])
+    r0, c0 = max(row - reach, 0), max(col - reach, 0)
+    cells = np.argwhere(open_[r0 : row + reach + 1, c0 : col + reach + 1])
+    if not len(cells):
+        return None
+    off = cells + np.array([r0 - row, c0 - col])
+    best = off[np.argmin((off**2).sum(axis=1))]
+    return row + int(best[0]), col + int(best[1])
+
+
+def _distance(open_: Mask, start: tuple[int, int], goal: tuple[int, int]) -> float:
+    """Steps from a free cell to another, by growing; eight neighbours in turn make octagons."""
+    reached = np.zeros_like(open_)
+    reached[start] = True
+    cross, square = ndimage.generate_binary_structure(2, 1), np.ones((3, 3), dtype=bool)
+    steps, size = 0, 1
+    while not reached[goal]:
+        reached = ndimage.binary_dilation(reached, square if steps % 3 == 1 else cross) & open_
+        steps += 1
+        grown = int(reached.sum())
+        if grown == size:
+            return math.inf
+        size = grown
+    return float(steps)
+
+
+def _width_at(free: Mask, jambs: Array, shift: Array) -> float:
+    """Free cells in line with a gap that is shifted to before or behind it."""
+    middle = jambs.mean(axis=0) + shift
+    step = (jambs[1] - jambs[0]) / np.linalg.norm(jambs[1] - jambs[0])
+    return sum(_run(free, middle, sign * step) for sign in (1, -1))
+
+
+def _run(free: Mask, start: Array, step: Array) -> float:
+    longest = int(WINDOW_M / 0.05)
+    cells = np.floor(start + np.outer(np.arange(longest), step)).astype(int)
+    inside = ((cells >= 0) & (cells < np.array(free.shape[::-1]))).all(axis=1)
+    cells = cells[inside]
+    blocked = np.flatnonzero(~free[cells[:, 1], cells[:, 0]])
+    return float(blocked[0]) if len(blocked) else float(len(cells))

@@ -1,0 +1,117 @@
+"""What one depth image shows all around the camera, by bearing: obstacles, walls, free floor.
+
+A virtual laser scan, as wide as the image and made of heights instead of one height, so that what
+a laser at shin height looks under or through (tables, shelves) is in the way, and what is low is
+told from walls.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb.flow import View
+from afkb_mapping.kernels import kernel
+from afkb_mapping.sensor_noise import depth_sigma
+
+Array = NDArray[np.float64]
+
+BEARINGS = 720
+"""Directions all around: half a degree each, as a common laser's beams."""
+STEP_PX = 130.0
+"""Focal length (px) over this: every so many pixels are read, 0.44 degrees apart."""
+STEP_OVER_M = 0.10
+"""What is lower than this a robot drives over: thresholds, carpets, the floor's own noise."""
+TALL_M = 1.1
+"""What is higher than this is a wall or as tall as a person: counters, beds, chair backs end below.
+"""
+HEAD_M = 1.7
+"""What begins above this hangs over one's head: lintels, lamps, ceilings."""
+FARTHEST_M = 8.0
+NOISE_SIGMAS = 3.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panorama:
+    """Ranges by bearing about `center_xy` (2,), m, map frame; NaN where nothing was seen.
+
+    - `bearings` (N,) rad, map frame, ascending: middle of each direction.
+    - `low_m`, `tall_m`: (N,) to the nearest thing between `STEP_OVER_M` and `TALL_M`, and between
+      that and `HEAD_M`.
+    - `floor_m`: (N,) to the farthest floor that was seen.
+    - `obstacle_m`: (N,) to the nearest thing in the way, of any height.
+    - `free_m`: (N,) how far the way is seen to be free; 0 where nothing was seen.
+    """
+
+    center_xy: Array
+    bearings: Array
+    low_m: Array
+    tall_m: Array
+    floor_m: Array
+    obstacle_m: Array
+    free_m: Array
+
+    def at(self, points_xy: Array) -> tuple[NDArray[np.intp], Array]:
+        """Index of the direction of points (M, 2), map frame, and their distances, m."""
+        off = points_xy - self.center_xy
+        turn = (np.arctan2(off[:, 1], off[:, 0]) + math.pi) / (2 * math.pi)
+        index = (turn * len(self.bearings)).astype(np.intp) % len(self.bearings)
+        return index, np.hypot(off[:, 0], off[:, 1])
+
+
+def panorama_of(view: View) -> Panorama | None:
+    """The panorama of a placed view; None where it has no depth."""
+    if view.depth_m is None or view.camera is None:
+        return None
+    camera, T = view.camera, view.T_map_camera
+    intrinsics = np.array([camera.fx, camera.fy, camera.cx, camera.cy])
+    step = max(1, round(camera.fx / STEP_PX))
+    ranges = _ranges(view.depth_m, intrinsics, T, step)
+    ranges[~np.isfinite(ranges)] = np.nan
+    turns: Array = (np.arange(BEARINGS, dtype=np.float64) + 0.5) / BEARINGS
+    bearings = turns * (2 * math.pi) - math.pi
+    low, tall, floor = ranges[1], ranges[3], ranges[4]
+    obstacle = np.fmin(low, tall)
+    free = np.nan_to_num(np.where(np.isnan(obstacle), floor, obstacle))
+    return Panorama(T[:2, 3].copy(), bearings, low, tall, floor, obstacle, free)
+
+
+@kernel
+def _ranges(depth_m: NDArray[np.float32], intrinsics: Array, T: Array, step: int) -> Array:
+    """(5, BEARINGS) m: nearest and second nearest low thing, the same of tall ones, farthest floor.
+
+    The second nearest is what counts: single pixels at edges float in the air.
+    """
+    fx, fy, cx, cy = intrinsics
+    found = np.full((5, BEARINGS), np.inf)
+    found[4] = -np.inf
+    for v in range(0, depth_m.shape[0], step):
+        yc = (v - cy) / fy
+        for u in range(0, depth_m.shape[1], step):
+            d = float(depth_m[v, u])
+            if not 0.0 < d < FARTHEST_M:
+                continue
+            xc = (u - cx) / fx
+            height = d * (T[2, 0] * xc + T[2, 1] * yc + T[2, 2]) + T[2, 3]
+            if height >= HEAD_M:
+                continue
+            x = d * (T[0, 0] * xc + T[0, 1] * yc + T[0, 2])
+            y = d * (T[1, 0] * xc + T[1, 1] * yc + T[1, 2])
+            r = math.sqrt(x * x + y * y)
+            turn = (math.atan2(y, x) + math.pi) / (2 * math.pi)
+            k = int(turn * BEARINGS) % BEARINGS
+            slack = max(STEP_OVER_M, NOISE_SIGMAS * depth_sigma(d))
+            if height < slack:
+                if height > -slack:
+                    found[4, k] = max(found[4, k], r)
+                continue
+            row = 0 if height < TALL_M else 2
+            if r < found[row, k]:
+                found[row + 1, k] = found[row, k]
+                found[row, k] = r
+            elif r < found[row + 1, k]:
+                found[row + 1, k] = r
+    return found
