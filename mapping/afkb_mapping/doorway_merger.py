@@ -173,7 +173,8 @@ def _ramp(value: float, low: float, high: float, least: float = 0.0) -> float:
 
 def is_passage(detection: Detection) -> bool:
     """Whether a detection is of an opening, which is no thing and no surface."""
-    return FEATURE in detection.affordances and len(detection.affordances) == 1
+    p = detection.affordances.get(FEATURE)
+    return p is not None and p == max(detection.affordances.values())
 
 
 def jambs_of(detection: Detection) -> Array:

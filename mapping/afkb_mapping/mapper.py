@@ -11,6 +11,7 @@ from afkb.flow import Closure, Detection, Hypothesis, Relation, TopologicalMap, 
 from afkb.inference import Network
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
+from afkb_mapping.doorway_merger import DoorwayMerger
 from afkb_mapping.entities import is_kept
 from afkb_mapping.grid_input import insert_view
 from afkb_mapping.grounding import fits, ground, joined, same_prediction
@@ -44,6 +45,7 @@ class AffordanceMapper:
         self._association = Association(self._new_id)
         self._places = Places(self._new_id)
         self._bounds = BoundMerger()
+        self._doorways = DoorwayMerger()
         self._grid = GridBuilder()
         self._predictions: list[PredictedTrack] = []
         self._closures: list[Closure] = []
@@ -73,6 +75,7 @@ class AffordanceMapper:
             places=self._places.places,
             ways=list(self._places.ways),
             bounds=self._bounds.bounds(),
+            doorways=self._doorways.doorways(self._grid.grid()),
             grid=self._grid.grid(),
             closures=self._closures,
             trajectory=self._trajectory,
@@ -202,6 +205,7 @@ class AffordanceMapper:
                 track.places[place.id] = None
         for prediction in expected:
             prediction.places[place.id] = None
+        self._doorways.add(view, detections)
         for detection in detections:
             if detection.segment_xy is not None:
                 self._bounds.add(detection, place.id)

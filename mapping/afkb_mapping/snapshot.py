@@ -21,6 +21,8 @@ from afkb.flow import (
     TopologicalMap,
 )
 from afkb.inference import Network
+from afkb_mapping.doorway_merger import SeenDoorway
+from afkb_mapping.doorways_united import united
 from afkb_mapping.edges import edges_of
 from afkb_mapping.entities import observed_entities, predicted_entities, supports_expected
 from afkb_mapping.occupancy import rasterise
@@ -50,6 +52,7 @@ class MapContent:
     places: Sequence[Place]
     ways: Sequence[tuple[str, str]]
     bounds: Sequence[Bound]
+    doorways: Sequence[SeenDoorway]
     grid: OccupancyGrid
     closures: Sequence[Closure]
     trajectory: Sequence[tuple[float, NDArray[np.float64]]]
@@ -80,7 +83,7 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
         places=tuple(places),
         entities=tuple(entities),
         bounds=tuple(bounds),
-        doorways=tuple(_doorways(segmentation)),
+        doorways=tuple(_doorways(segmentation, content.doorways, lookup)),
         rooms=tuple(_rooms(segmentation, lookup, entities, places, content)),
         edges=tuple(edges_of(places, content.ways, entities, seen, bounds)),
         grid=_with_things(content.grid, entities),
@@ -111,10 +114,12 @@ def _bound_in_room(bound: Bound, lookup: RoomLookup) -> Bound:
     return replace(bound, room=lookup.room_at(*middle))
 
 
-def _doorways(segmentation: Segmentation) -> list[Doorway]:
+def _doorways(
+    segmentation: Segmentation, seen: Sequence[SeenDoorway], lookup: RoomLookup
+) -> list[Doorway]:
     return [
-        Doorway(f"doorway-{i}", d.x, d.y, d.yaw, d.width, tuple(room_id(n) for n in d.labels))
-        for i, d in enumerate(segmentation.doorways, start=1)
+        Doorway(f"doorway-{i}", d.x, d.y, d.yaw, d.width, d.rooms)
+        for i, d in enumerate(united(segmentation.doorways, seen, lookup.room_at), start=1)
     ]
 
 

@@ -11,6 +11,7 @@ from afkb.flow import Detection, Hypothesis, TopologicalMap, View
 from afkb.inference import Network
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
+from afkb_mapping.doorway_merger import DoorwayMerger
 from afkb_mapping.grid_input import insert_view
 from afkb_mapping.ids import Ids
 from afkb_mapping.occupancy import GridBuilder
@@ -27,6 +28,7 @@ class ObservedOnlyMapper:
         self._association = Association(new_id)
         self._places = Places(new_id)
         self._bounds = BoundMerger()
+        self._doorways = DoorwayMerger()
         self._grid = GridBuilder()
         self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
         self._looked_from: list[NDArray[np.float64]] = []
@@ -45,6 +47,7 @@ class ObservedOnlyMapper:
         place = self._places.visit(view, in_view, self._grid)
         for track in seen:
             track.places[place.id] = None
+        self._doorways.add(view, detections)
         for detection in detections:
             if detection.segment_xy is not None:
                 self._bounds.add(detection, place.id)
@@ -58,6 +61,7 @@ class ObservedOnlyMapper:
             places=self._places.places,
             ways=list(self._places.ways),
             bounds=self._bounds.bounds(),
+            doorways=self._doorways.doorways(self._grid.grid()),
             grid=self._grid.grid(),
             closures=(),
             trajectory=self._trajectory,
