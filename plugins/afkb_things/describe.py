@@ -8,12 +8,13 @@ from afkb.flow import Detection
 from afkb_mapping.bodies import Body
 from afkb_mapping.from_above import box_around, on_grid, sides_from_above
 from afkb_mapping.order_statistics import percentile
+from afkb_things.settings import ThingSettings
+from afkb_things.wholeness import wholeness
 
 ATTACHED = (0.08, 0.22)
 """Share of a body's outline beyond which its surface goes on: below the first it stands free,
 above the second it is part of something larger."""
-CUT = 0.5
-"""How often a body that the image edge cuts is one body as it is seen."""
+HIGHEST_M = ThingSettings().above_m[1]
 
 
 def body_detection(body: Body, attached: float, detector: str) -> Detection:
@@ -24,7 +25,7 @@ def body_detection(body: Body, attached: float, detector: str) -> Detection:
     spread = body.sigma_m**2 + 1e-4
     return Detection(
         detector=detector,
-        affordances={"DisposeAbility": free * (CUT if body.cut_by_image else 1.0)},
+        affordances={"DisposeAbility": free * wholeness(body, top - base, HIGHEST_M)},
         box=box,
         position_xyz=np.array(box.center_xyz),
         covariance_xyz=np.diag([spread, spread, 0.25 * spread]),
