@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
 
+Rectangle = tuple[int, int, int, int]
+BLIND_SHARE, BLIND_RETURNS = 0.06, 0.02
+"""A blind border is at most this part of an image; wider ones are something that returns nothing,
+as a window or a dark screen. Of its lines, strays aside, none returns."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Region:
     """Pixels of one thing or surface in a depth image of `shape`, all arrays (N, …).
 
-    Coordinates `u` (column) and `v` (row), depth in m, and points in the map frame.
+    Coordinates `u` (column) and `v` (row), depth in m, and points in the map frame. `returning`:
+    the rectangle of pixels that can return (see `returning_rectangle`); None for all.
     """
 
     u: NDArray[np.int32]
@@ -22,6 +28,7 @@ class Region:
     depth_m: NDArray[np.float32]
     points: NDArray[np.float64]
     shape: tuple[int, ...]
+    returning: Rectangle | None = field(default=None, kw_only=True)
 
     @property
     def image_box(self) -> tuple[int, int, int, int]:
@@ -30,9 +37,60 @@ class Region:
 
     @property
     def cut_by_image(self) -> bool:
-        """Whether it reaches the image edge."""
-        u0, v0, u1, v1 = self.image_box
-        return u0 <= 1 or v0 <= 1 or u1 >= self.shape[1] - 1 or v1 >= self.shape[0] - 1
+        """Whether it reaches the edge of what the sensor can return."""
+        return is_cut(self.image_box, self.returning or (0, 0, self.shape[1], self.shape[0]))
+
+
+def is_cut(image_box: Rectangle, returning: Rectangle) -> bool:
+    """Whether a box of pixels reaches the edge of the pixels that can return, to one pixel."""
+    u0, v0, u1, v1 = returning
+    left, top, right, bottom = image_box
+    return left <= u0 + 1 or top <= v0 + 1 or right >= u1 - 1 or bottom >= v1 - 1
+
+
+@kernel
+def returning_rectangle(depth_m: NDArray[np.float32]) -> Rectangle:
+    """The pixels (u0, v0, u1, v1), half-open, that the sensor can return at all.
+
+    The matching windows of stereo and structured light leave a blind border, which ends what is
+    seen no less than the image's edge does. It is told from one view: a margin, up to BLIND_SHARE
+    of the image, in which all but BLIND_RETURNS of the rows (or columns) have nothing.
+    """
+    height, width = depth_m.shape
+    most_u, most_v = int(BLIND_SHARE * width), int(BLIND_SHARE * height)
+    left, right = np.zeros(most_u + 1, np.int64), np.zeros(most_u + 1, np.int64)
+    top, bottom = np.zeros(most_v + 1, np.int64), np.zeros(most_v + 1, np.int64)
+    for v in range(height):
+        k = 0
+        while k < most_u and not depth_m[v, k] > 0:
+            k += 1
+        left[k] += 1
+        k = 0
+        while k < most_u and not depth_m[v, width - 1 - k] > 0:
+            k += 1
+        right[k] += 1
+    for u in range(width):
+        k = 0
+        while k < most_v and not depth_m[k, u] > 0:
+            k += 1
+        top[k] += 1
+        k = 0
+        while k < most_v and not depth_m[height - 1 - k, u] > 0:
+            k += 1
+        bottom[k] += 1
+    u1, v1 = width - _blind(right, height), height - _blind(bottom, width)
+    return _blind(left, height), _blind(top, width), u1, v1
+
+
+@kernel
+def _blind(begins: NDArray[np.int64], lines: int) -> int:
+    """Width of a blind margin, px, from how many of its lines begin to return at each pixel."""
+    begun = 0
+    for k in range(len(begins)):
+        begun += begins[k]
+        if begun > BLIND_RETURNS * lines:
+            return k if k < len(begins) - 1 else 0
+    return 0
 
 
 @kernel

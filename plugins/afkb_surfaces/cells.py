@@ -1,144 +1,198 @@
-"""Planes of small cells of a depth image: the first, coarse look at every surface in it.
-
-A plane is linear in inverse depth, and inverse depth has nearly constant noise, so a cell's
-plane is an unweighted least-squares fit of 1/z to pixel coordinates.
-"""
+"""Planes of small cells of a depth image: the first, coarse look at every surface in it."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
 from afkb_mapping.sensor_noise import depth_sigma
-
-CELL = 4
-"""Pixels along a cell; its plane is fitted to a window of three by three cells if it can."""
+from afkb_surfaces.moments import CELL, ONE, ZERO, cell_moments
+from afkb_surfaces.windows import (
+    MEAN_U,
+    MEAN_V,
+    MEAN_W,
+    SLOPE_U,
+    SLOPE_V,
+    SPREAD,
+    VARIANCE,
+    WEIGHT,
+    cell_fit,
+    window_fits,
+)
 
 A, B, C, NX, NY, NZ, X, Y, Z, DEPTH, SIGMA_TILT, COUNT = range(12)
-"""Columns of a cell: 1/z = A u + B v + C; normal, centroid (map frame); what they are worth."""
-N_COLUMNS = 12
+"""Rows of the planes: 1/z = A u + B v + C; normal, centroid (map frame); what they are worth."""
+N_ROWS = 12
+
+FINE_FOCAL_PX = 800.0
+"""An image finer than this is thinned to about half as many pixels a side before its cells are
+fitted: a cell need not see finer than the surfaces that it looks for."""
+FLAT = 1.6
+"""A plane fits where the pixels stray from it by at most this many times the noise."""
+LEAST_WINDOW, LEAST_CELL = 0.3, 0.5
+"""Share of the pixels of a window, and of a cell, that must have depth for a plane to be fitted;
+half of them may be missing anywhere."""
+MIDDLE, TINY = np.float32(0.5 * (CELL - 1)), np.float32(1e-12)
+MOST_NOISE = 4.0
+"""A sensor, or a scene of leaves and tangles, may seem this much noisier than a Kinect."""
+QUIET_SHARE = 0.35
+"""At least this share of a view's windows is taken to lie on planes: they show the noise."""
 
 
-@kernel
-def cell_sums(depth_m: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Moments of each cell: (rows + 2, cols + 2, 10) of n, u, v, w, uu, uv, vv, uw, vw, ww.
+@dataclass(frozen=True, slots=True, eq=False)
+class Cells:
+    """Cells of a depth image.
 
-    w = 1/z; a margin of one empty cell lies around them.
+    - `planes`: (rows, N_ROWS, cols) float32; COUNT is 0 where no plane fits.
+    - `size_px`: pixels along a cell. `noise`: how many times noisier than `depth_sigma` the view
+      is, 1 or more.
     """
-    rows, cols = depth_m.shape[0] // CELL, depth_m.shape[1] // CELL
-    sums = np.zeros((rows + 2, cols + 2, 10))
-    for r in range(rows):
-        for c in range(cols):
-            n = 0
-            su = sv = sw = suu = suv = svv = suw = svw = sww = 0.0
-            for i in range(r * CELL, (r + 1) * CELL):
-                v = float(i)
-                for j in range(c * CELL, (c + 1) * CELL):
-                    z = depth_m[i, j]
-                    if z > 0:
-                        u, w = float(j), 1.0 / z
-                        n += 1
-                        su += u
-                        sv += v
-                        sw += w
-                        suu += u * u
-                        suv += u * v
-                        svv += v * v
-                        suw += u * w
-                        svw += v * w
-                        sww += w * w
-            s = sums[r + 1, c + 1]
-            s[0], s[1], s[2], s[3] = n, su, sv, sw
-            s[4], s[5], s[6], s[7], s[8], s[9] = suu, suv, svv, suw, svw, sww
-    return sums
+
+    planes: NDArray[np.float32]
+    size_px: int
+    noise: float
+
+    @classmethod
+    def of(
+        cls,
+        depth_m: NDArray[np.float32],
+        intrinsics: NDArray[np.float64],
+        T_map_camera: NDArray[np.float64],
+        softness_m: float,
+    ) -> Cells:
+        """Planes of the cells of a depth image (H, W); `intrinsics` is fx, fy, cx, cy."""
+        thin = max(1, round(float(intrinsics[0]) / FINE_FOCAL_PX + 0.1))
+        coarse = np.ascontiguousarray(depth_m[::thin, ::thin], dtype=np.float32)
+        moments = cell_moments(coarse)
+        fits = window_fits(moments)
+        noise = noise_of(fits)
+        keep_flat(fits, moments, noise, softness_m)
+        planes = cell_planes(fits, intrinsics / thin, T_map_camera, noise)
+        planes[:, :2] /= thin
+        return cls(planes, CELL * thin, noise)
 
 
 @kernel
-def _fit(s: NDArray[np.float64], plane: NDArray[np.float64]) -> bool:
-    """Least squares of w on (u, v) from moments; plane = a, b, c, mean w, rms, variance of v."""
-    n = s[0]
-    mu, mv, mw = s[1] / n, s[2] / n, s[3] / n
-    cuu, cuv, cvv = s[4] / n - mu * mu, s[5] / n - mu * mv, s[6] / n - mv * mv
-    cuw, cvw, cww = s[7] / n - mu * mw, s[8] / n - mv * mw, s[9] / n - mw * mw
-    det = cuu * cvv - cuv * cuv
-    if det < 0.05:
-        return False
-    a, b = (cuw * cvv - cvw * cuv) / det, (cvw * cuu - cuw * cuv) / det
-    plane[0], plane[1], plane[2] = a, b, mw - a * mu - b * mv
-    plane[3] = mw
-    plane[4] = np.sqrt(max(cww - a * cuw - b * cvw, 0.0))
-    plane[5] = min(cuu, cvv)
-    plane[6], plane[7] = mu, mv
-    return True
+def noise_of(fits: NDArray[np.float32]) -> float:
+    """How many times noisier a view is than `depth_sigma` says, between 1 and MOST_NOISE."""
+    bins, n = np.zeros(64, np.int64), 0
+    least = np.float32(9 * CELL * CELL * LEAST_WINDOW)
+    for r in range(1, fits.shape[0], 2):
+        for c in range(1, fits.shape[2], 2):
+            if fits[r, WEIGHT, c] < least:
+                continue
+            z = ONE / fits[r, MEAN_W, c]
+            ratio = np.sqrt(fits[r, VARIANCE, c]) * z * z / depth_sigma(z)
+            bins[min(int(ratio * 8.0), 63)] += 1
+            n += 1
+    below = 0
+    for k in range(64):
+        below += bins[k]
+        if below > QUIET_SHARE * n:
+            return min(max((k + 1) / 8.0, 1.0), MOST_NOISE)
+    return 1.0
+
+
+@kernel
+def keep_flat(
+    fits: NDArray[np.float32], moments: NDArray[np.float32], noise: float, softness_m: float
+) -> None:
+    """Put a cell's own fit where its window's is none; WEIGHT 0 where that is none either."""
+    cols = fits.shape[2]
+    flat = np.empty(cols, np.bool_)
+    times, soft = np.float32(FLAT * noise), np.float32(softness_m)
+    least = np.float32(LEAST_WINDOW * 9 * CELL * CELL)
+    for r in range(fits.shape[0]):
+        own = moments[r + 1, 0, 1:-1]
+        _find_flat(fits[r], times, soft, flat)
+        for c in range(cols):
+            if flat[c] and own[c] >= CELL and fits[r, WEIGHT, c] >= least:
+                continue
+            if own[c] >= LEAST_CELL * CELL * CELL:
+                cell_fit(moments, r, c, fits)
+                _find_flat(fits[r, :, c : c + 1], times, soft, flat[c : c + 1])
+                if flat[c]:
+                    continue
+            fits[r, WEIGHT, c] = ZERO
+
+
+@kernel
+def _find_flat(
+    fit: NDArray[np.float32], times: np.float32, softness_m: np.float32, flat: NDArray[np.bool_]
+) -> None:
+    """Of a row of fits, those whose pixels stray no more than noise and softness allow."""
+    for c in range(len(flat)):
+        w = fit[MEAN_W, c]
+        z = ONE / max(w, TINY)
+        most = (times * np.float32(depth_sigma(z)) + softness_m) * w * w
+        flat[c] = fit[VARIANCE, c] <= most * most
 
 
 @kernel
 def cell_planes(
-    sums: NDArray[np.float64],
+    fits: NDArray[np.float32],
     intrinsics: NDArray[np.float64],
     T_map_camera: NDArray[np.float64],
-    softness_m: float,
-) -> NDArray[np.float64]:
-    """Plane of each cell (rows, cols, N_COLUMNS), map frame; COUNT is 0 where none fits.
-
-    `intrinsics` is fx, fy, cx, cy; the normal points to the camera.
-    """
-    fx, fy, cx, cy = intrinsics
-    rows, cols = sums.shape[0] - 2, sums.shape[1] - 2
-    cells = np.zeros((rows, cols, N_COLUMNS))
-    window, plane = np.zeros(10), np.zeros(8)
-    column = np.zeros((cols + 2, 10))
+    noise: float,
+) -> NDArray[np.float32]:
+    """Planes (rows, N_ROWS, cols) from fits, map frame; the normal points to the camera."""
+    rows, cols = fits.shape[0], fits.shape[2]
+    planes = np.empty((rows, N_ROWS, cols), np.float32)
+    camera, T = intrinsics.astype(np.float32), T_map_camera.astype(np.float32)
     for r in range(rows):
-        for c in range(cols + 2):
-            for k in range(10):
-                column[c, k] = sums[r + 1, c, k] + sums[r, c, k] + sums[r + 2, c, k]
-        for c in range(cols):
-            if sums[r + 1, c + 1, 0] < CELL:
-                continue
-            for k in range(10):
-                window[k] = column[c + 1, k] + column[c, k] + column[c + 2, k]
-            if window[0] < 4.5 * CELL * CELL or not _lies_flat(window, plane, softness_m):
-                narrow = sums[r + 1, c + 1]
-                if narrow[0] < 0.5 * CELL * CELL or not _lies_flat(narrow, plane, softness_m):
-                    continue
-                _write(cells[r, c], plane, narrow[0], fx, fy, cx, cy, T_map_camera)
-            else:
-                _write(cells[r, c], plane, window[0], fx, fy, cx, cy, T_map_camera)
-    return cells
+        _write_places(fits[r], planes[r], r, camera, T)
+        _write_normals(fits[r], planes[r], camera, T, np.float32(noise))
+    return planes
 
 
 @kernel
-def _lies_flat(s: NDArray[np.float64], plane: NDArray[np.float64], softness_m: float) -> bool:
-    """Whether a plane fits moments as well as noise and softness allow; writes the plane."""
-    if not _fit(s, plane):
-        return False
-    z = 1.0 / plane[3]
-    return bool(plane[4] * z * z <= 1.6 * depth_sigma(z) + softness_m)
-
-
-@kernel
-def _write(
-    cell: NDArray[np.float64],
-    plane: NDArray[np.float64],
-    n: float,
-    fx: float,
-    fy: float,
-    cx: float,
-    cy: float,
-    T: NDArray[np.float64],
+def _write_places(
+    fit: NDArray[np.float32],
+    out: NDArray[np.float32],
+    r: int,
+    camera: NDArray[np.float32],
+    T: NDArray[np.float32],
 ) -> None:
-    a, b, c, w = plane[0], plane[1], plane[2], plane[3]
-    px, py = a * fx, b * fy
-    pz = c + a * cx + b * cy
-    length = np.sqrt(px * px + py * py + pz * pz)
-    z = 1.0 / w
-    sigma = depth_sigma(z)
-    xc, yc = (plane[6] - cx) / fx * z, (plane[7] - cy) / fy * z
-    cell[A], cell[B], cell[C] = a, b, c
-    for k in range(3):
-        cell[NX + k] = -(T[k, 0] * px + T[k, 1] * py + T[k, 2] * pz) / length
-        cell[X + k] = T[k, 0] * xc + T[k, 1] * yc + T[k, 2] * z + T[k, 3]
-    cell[DEPTH] = z
-    cell[SIGMA_TILT] = sigma / (z * z) * fx / (length * np.sqrt(n * plane[5]))
-    cell[COUNT] = n
+    fx, fy, cx, cy = camera[0], camera[1], camera[2], camera[3]
+    R00, R01, R02, X0 = T[0, 0], T[0, 1], T[0, 2], T[0, 3]
+    R10, R11, R12, Y0 = T[1, 0], T[1, 1], T[1, 2], T[1, 3]
+    R20, R21, R22, Z0 = T[2, 0], T[2, 1], T[2, 2], T[2, 3]
+    v0, u0 = np.float32(r * CELL) + MIDDLE, MIDDLE
+    for c in range(fit.shape[1]):
+        a, b, w = fit[SLOPE_U, c], fit[SLOPE_V, c], fit[MEAN_W, c]
+        u, v = np.float32(c * CELL) + u0 + fit[MEAN_U, c], v0 + fit[MEAN_V, c]
+        z = ONE / max(w, TINY)
+        x, y = (u - cx) / fx * z, (v - cy) / fy * z
+        out[A, c], out[B, c], out[C, c] = a, b, w - a * u - b * v
+        out[X, c] = R00 * x + R01 * y + R02 * z + X0
+        out[Y, c] = R10 * x + R11 * y + R12 * z + Y0
+        out[Z, c] = R20 * x + R21 * y + R22 * z + Z0
+        out[DEPTH, c], out[COUNT, c] = z, fit[WEIGHT, c]
+
+
+@kernel
+def _write_normals(
+    fit: NDArray[np.float32],
+    out: NDArray[np.float32],
+    camera: NDArray[np.float32],
+    T: NDArray[np.float32],
+    noise: np.float32,
+) -> None:
+    """Normals, and how wrong they are; after `_write_places`."""
+    fx, fy, cx, cy = camera[0], camera[1], camera[2], camera[3]
+    R00, R01, R02 = T[0, 0], T[0, 1], T[0, 2]
+    R10, R11, R12 = T[1, 0], T[1, 1], T[1, 2]
+    R20, R21, R22 = T[2, 0], T[2, 1], T[2, 2]
+    for c in range(fit.shape[1]):
+        px, py = out[A, c] * fx, out[B, c] * fy
+        pz = out[C, c] + out[A, c] * cx + out[B, c] * cy
+        by_length = ONE / np.sqrt(max(px * px + py * py + pz * pz, TINY))
+        out[NX, c] = -(R00 * px + R01 * py + R02 * pz) * by_length
+        out[NY, c] = -(R10 * px + R11 * py + R12 * pz) * by_length
+        out[NZ, c] = -(R20 * px + R21 * py + R22 * pz) * by_length
+        spread = np.sqrt(max(fit[WEIGHT, c] * fit[SPREAD, c], ONE))
+        sigma = noise * np.float32(depth_sigma(out[DEPTH, c]))
+        out[SIGMA_TILT, c] = sigma * fit[MEAN_W, c] ** 2 * fx * by_length / spread

@@ -1,19 +1,20 @@
-"""From a labelled surface to the `Detection` that speaks of it."""
+"""From a measured patch to the `Detection` that speaks of it."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection
-from afkb_mapping.from_above import box_around, smallest_rectangle
-from afkb_mapping.image_regions import Region
-from afkb_mapping.order_statistics import percentiles
+from afkb_mapping.from_above import box_around
+from afkb_mapping.image_regions import Rectangle
 from afkb_mapping.sensor_noise import depth_sigma
 from afkb_mapping.trapezoids import membership
-from afkb_surfaces.extents import tilt_and_rms
+from afkb_surfaces.extents import row_ends
+from afkb_surfaces.patches import MEDIAN, NEAREST, RMS, TILT
 from afkb_surfaces.settings import SurfaceSettings
 
 BAND_PX = (6.0, 16.0, math.inf, math.inf)
@@ -25,58 +26,69 @@ SMEAR_PX, SMEARED = (4.0, 9.0, math.inf, math.inf), 0.4
 LOST_BORDER, STRIP_PX = 0.3, 30.0
 """A strip in the image that for this part of its border ends where the sensor returns nothing, as
 glossy and black tops do, may reach anywhere; of a broad patch at least what was seen is known."""
+KINECT_FOCAL_PX = 550.0
+"""Focal length at which all pixels here are counted: a finer image shows a smear in more pixels."""
+
+
+def support_probability(
+    area_m2: float, tilt_deg: float, band_px: float, settings: SurfaceSettings
+) -> float:
+    """How surely an upward-facing patch supports; 0 where it is too small, steep or narrow.
+
+    `band_px`: mean width in the image across its longer direction, at KINECT_FOCAL_PX.
+    """
+    # a floor or a stage supports however large it is
+    p = membership(min(area_m2, settings.area_m2[2]), settings.area_m2)
+    p *= membership(tilt_deg, settings.normal_to_up_deg)
+    p *= max(membership(band_px, BAND_PX), membership(tilt_deg, LEVEL_DEG))
+    return 0.97 * p * max(membership(band_px, SMEAR_PX), SMEARED)
 
 
 def support_detection(
-    patch: Region,
-    footprint_xy: NDArray[np.float64],
+    p: float,
+    m: NDArray[np.float64],
     height_m: float,
-    missing_border: float,
-    settings: SurfaceSettings,
+    footprint_xy: NDArray[np.float64],
+    border: Mapping[str, float],
+    measures: Mapping[str, float],
+    image_box: Rectangle,
+    pixels: NDArray[np.int32] | None,
+    rings_xy: tuple[NDArray[np.float64], ...],
+    cut: bool,
+    noise: float,
+    step_m: float,
     detector: str,
-) -> Detection | None:
-    """What an upward-facing patch affords, or None where it is too small or too steep."""
-    area = len(footprint_xy) * settings.footprint_step_m**2
-    tilt_deg, rms = tilt_and_rms(patch.points)
-    band_px = image_width(patch)
-    # a floor or a stage supports however large it is
-    p = membership(min(area, settings.area_m2[2]), settings.area_m2) * membership(
-        tilt_deg, settings.normal_to_up_deg
-    )
-    p *= max(membership(band_px, BAND_PX), membership(tilt_deg, LEVEL_DEG))
-    p *= max(membership(band_px, SMEAR_PX), SMEARED)
-    if p <= 0:
-        return None
-    box = box_around(footprint_xy, height_m, settings.footprint_step_m)
-    nearest, median = percentiles(patch.depth_m, 1.0, 50.0)
-    sigma = depth_sigma(median)
-    cut = patch.cut_by_image
+) -> Detection:
+    """The detection of a patch with these measures (see `patches`), its top at height_m."""
+    box = box_around(row_ends(footprint_xy), height_m, step_m)
+    sigma = noise * depth_sigma(m[MEDIAN])
+    covariance = np.zeros((3, 3))
     spread = 0.25 * math.hypot(*box.size_xyz[:2]) if cut else 0.0
+    covariance[0, 0] = covariance[1, 1] = sigma**2 + spread**2 + 1e-4
+    covariance[2, 2] = (0.4 * sigma) ** 2 + 4e-6
+    missing = border.get("missing", 0.0)
+    tilt_deg = math.degrees(m[TILT])
     return Detection(
         detector=detector,
-        affordances={"SupportAbility": 0.97 * p},
+        affordances={"SupportAbility": p},
         box=box,
         position_xyz=np.array([box.center_xyz[0], box.center_xyz[1], height_m]),
-        covariance_xyz=np.diag([sigma**2 + spread**2 + 1e-4] * 2 + [(0.4 * sigma) ** 2 + 4e-6]),
+        covariance_xyz=covariance,
         footprint_xy=footprint_xy,
-        n_pixels=len(patch.u),
-        range_m=nearest,
-        image_box=patch.image_box,
+        n_pixels=int(measures["pixels"]),
+        range_m=float(m[NEAREST]),
+        image_box=image_box,
         cut_by_image=cut,
-        extent_known=missing_border < LOST_BORDER or band_px > STRIP_PX,
+        extent_known=missing < LOST_BORDER or measures["band_px"] > STRIP_PX,
         measures={
             "height": height_m,
-            "area": area,
+            "area": measures["area"],
             "tilt_deg": tilt_deg,
-            "rms": rms,
-            "missing_border": missing_border,
-            "band_px": band_px,
+            "rms": float(m[RMS]),
+            "missing_border": missing,
+            "band_px": measures["band_px"],
         },
+        pixels=pixels,
+        rings_xy=rings_xy,
+        border=border,
     )
-
-
-def image_width(patch: Region) -> float:
-    """Mean width of a patch across its longer direction in the image, px."""
-    thin = max(1, len(patch.u) // 600)
-    _, sides, _ = smallest_rectangle(np.column_stack([patch.u[::thin], patch.v[::thin]]))
-    return float(len(patch.u) / (max(sides) + 1.0))

@@ -4,46 +4,42 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
-from afkb_mapping.from_above import on_grid
-from afkb_mapping.image_regions import Region, pixels_by_label
-from afkb_mapping.order_statistics import percentile
-from afkb_surfaces.borders import missing_border_fractions
-from afkb_surfaces.cells import cell_planes, cell_sums
-from afkb_surfaces.describe import support_detection
-from afkb_surfaces.extents import filled_footprint, mode_height
+from afkb_mapping.image_regions import Rectangle, order_by_label, returning_rectangle
+from afkb_surfaces.cells import Cells
 from afkb_surfaces.fragments import join_fragments
 from afkb_surfaces.grouping import (
+    FLOOR,
     SUPPORT,
     UPRIGHT,
     classify,
     grow,
-    label_spans,
-    pixel_labels,
-    points_of,
+    kinds_of_labels,
+    links_of,
+    renamed,
 )
+from afkb_surfaces.labelled import Labelled
+from afkb_surfaces.patches import measure_patches
 from afkb_surfaces.settings import SurfaceSettings
-from afkb_surfaces.upright import upright_detection
+from afkb_surfaces.supports import LEAST_CELLS, Supports, candidates
+from afkb_surfaces.upright import CELLS, measure_walls, upright_detection
 
-FLOOR_LABEL = 1
-FLOOR_THIN = 3
-FLOOR_STEP_M = 0.05
-MIN_PIXELS, MIN_CELLS = 80, 20
-BELOW_CAMERA_M = 0.01
-"""An upper surface is seen from above only; what seems to be one higher up is noise."""
+LEAST_WALL_CELLS = 20
+WORTH_A_LOOK = 0.9
+"""What is lower than this part of the lowest bound isn't looked at closer."""
 UPRIGHT_WITHIN_RAD = math.radians(12)
 
 
 class SurfaceDetector:
     """Finds floor, supports and upright bounds in a placed view; needs nothing but depth.
 
-    Coarse to fine: planes of 4 px cells, cells grown to surfaces, parts behind an occluder
-    joined, borders settled per pixel. The floor is reported once, with `measures["is_floor"]`.
+    Coarse to fine: planes of small cells, cells grown to surfaces, parts behind an occluder
+    joined, borders settled per pixel (`settings.borders`). The floor is reported once, with
+    `measures["is_floor"]` and without pixels of its own.
     """
 
     name = "surfaces"
@@ -59,94 +55,58 @@ class SurfaceDetector:
             return []
         s, camera, T = self.settings, view.camera, view.T_map_camera
         intrinsics = np.array([camera.fx, camera.fy, camera.cx, camera.cy])
-        cells = cell_planes(cell_sums(view.depth_m), intrinsics, T, s.softness_m)
+        cells = Cells.of(view.depth_m, intrinsics, T, s.softness_m)
         tilt = math.radians(s.normal_to_up_deg[3])
-        kinds = classify(cells, tilt, UPRIGHT_WITHIN_RAD, s.floor_m)
-        labels, _ = grow(cells, kinds, s.step_m)
-        labels = join_fragments(
-            view.depth_m, cells, labels, kinds, intrinsics, T, s.step_m, s.gap_m
+        kinds = classify(cells.planes, tilt, UPRIGHT_WITHIN_RAD, s.floor_m, cells.noise)
+        links = links_of(cells.planes, kinds, s.step_m, cells.noise)
+        labels, highest = grow(cells.planes, kinds, links)
+        of_label = kinds_of_labels(labels, kinds, highest)
+        target = join_fragments(
+            view.depth_m, cells, labels, of_label == SUPPORT, intrinsics, T, s.step_m, s.gap_m
         )
-        pixels = pixel_labels(view.depth_m, cells, labels, kinds, s.softness_m)
-        found = list(self._supports(view.depth_m, labels, kinds, pixels, intrinsics, T))
-        return found + list(self._bounds(cells, labels, kinds, camera.fx))
+        labels = renamed(labels, target)
+        returning = returning_rectangle(view.depth_m)
+        upward = (of_label == SUPPORT) | (of_label == FLOOR)
+        walls = self._bounds(cells, labels, of_label == UPRIGHT, returning, camera.fx)
+        return [*self._supports(view, cells, labels, upward, returning), *walls]
 
     def _supports(
         self,
-        depth_m: NDArray[np.float32],
+        view: View,
+        cells: Cells,
         labels: NDArray[np.int32],
-        kinds: NDArray[np.int8],
-        pixels: NDArray[np.int32],
-        intrinsics: NDArray[np.float64],
-        T: NDArray[np.float64],
+        upward: NDArray[np.bool_],
+        returning: Rectangle,
     ) -> Iterator[Detection]:
-        n = int(labels.max()) + 2
-        wanted, thin = np.zeros(n, bool), np.ones(n, np.int64)
-        wanted[labels[kinds == SUPPORT]] = True
-        wanted[FLOOR_LABEL], thin[FLOOR_LABEL] = True, FLOOR_THIN
-        u, v, starts = pixels_by_label(pixels, wanted, thin)
-        depths, points = points_of(u, v, depth_m, intrinsics, T)
-        missing = missing_border_fractions(depth_m, pixels, n)
-        for label in np.flatnonzero(np.diff(starts) >= MIN_PIXELS):
-            part = slice(int(starts[label]), int(starts[label + 1]))
-            patch = Region(u[part], v[part], depths[part], points[part], depth_m.shape)
-            if label == FLOOR_LABEL:
-                yield from self._floor(patch)
-            else:
-                yield from self._support(
-                    patch, pixels, int(label), float(missing[label]), intrinsics, T
-                )
-
-    def _support(
-        self,
-        patch: Region,
-        pixels: NDArray[np.int32],
-        label: int,
-        missing_border: float,
-        intrinsics: NDArray[np.float64],
-        T: NDArray[np.float64],
-    ) -> Iterator[Detection]:
-        height = mode_height(patch.points)
-        if height > T[2, 3] - BELOW_CAMERA_M:
-            return
-        footprint = filled_footprint(
-            patch.points, pixels, label, height, intrinsics, T, self.settings.footprint_step_m
-        )
-        found = support_detection(
-            patch, footprint, height, missing_border, self.settings, self.name
-        )
-        if found is not None:
-            yield found
-
-    def _floor(self, patch: Region) -> Iterator[Detection]:
-        """The floor, once; its height is where it was seen, its top is z = 0."""
-        footprint = on_grid(patch.points, FLOOR_STEP_M)
-        found = support_detection(patch, footprint, 0.0, 0.0, self.settings, self.name)
-        if found is not None:
-            measures = {
-                **found.measures,
-                "is_floor": 1.0,
-                "area": len(footprint) * FLOOR_STEP_M**2,
-                "height": percentile(patch.points[:, 2], 50.0),
-            }
-            n_pixels = found.n_pixels * FLOOR_THIN**2
-            yield replace(found, n_pixels=n_pixels, extent_known=True, measures=measures)
+        depth, camera, T, s = view.depth_m, view.camera, view.T_map_camera, self.settings
+        assert depth is not None and camera is not None
+        intrinsics = np.array([camera.fx, camera.fy, camera.cx, camera.cy])
+        order, starts = order_by_label(labels.ravel(), upward)
+        angle, eye = cells.size_px / camera.fx, float(T[2, 3])
+        measures = measure_patches(order, starts, cells.planes, LEAST_CELLS, angle, eye)
+        wanted = candidates(measures, eye, camera.fx, s)
+        image = coarse = Labelled.of_cells(cells, labels, intrinsics, returning)
+        if s.borders:
+            image = Labelled.of_pixels(
+                depth, cells, labels, wanted, intrinsics, returning, s.softness_m
+            )
+        return Supports(
+            depth, cells, measures, wanted, image, coarse, T, camera.fx, s, self.name
+        ).detections()
 
     def _bounds(
         self,
-        cells: NDArray[np.float64],
+        cells: Cells,
         labels: NDArray[np.int32],
-        kinds: NDArray[np.int8],
+        upright: NDArray[np.bool_],
+        returning: Rectangle,
         focal_px: float,
     ) -> Iterator[Detection]:
-        upright = np.where(kinds == UPRIGHT, labels, 0).astype(np.int32)
-        n = int(labels.max()) + 1
-        spans = label_spans(cells, upright, n)
-        tall = spans[:, 2] - spans[:, 1] > 0.9 * self.settings.bound_height_m[0]
-        wanted = tall & (spans[:, 0] >= MIN_CELLS)
-        wanted[0] = False
-        u, v, starts = pixels_by_label(upright, wanted, np.ones(n, np.int64))
-        for label in np.flatnonzero(wanted):
-            part = slice(int(starts[label]), int(starts[label + 1]))
-            found = upright_detection(u[part], v[part], cells, focal_px, self.settings, self.name)
+        order, starts = order_by_label(labels.ravel(), upright)
+        tall = WORTH_A_LOOK * self.settings.bound_height_m[0]
+        angle = cells.size_px / focal_px
+        measures = measure_walls(order, starts, cells.planes, LEAST_WALL_CELLS, tall, angle)
+        for label in np.flatnonzero(measures[:, CELLS] > 0):
+            found = upright_detection(measures[label], cells, returning, self.settings, self.name)
             if found is not None:
                 yield found

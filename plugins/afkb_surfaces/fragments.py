@@ -8,28 +8,28 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb_mapping.image_regions import pixels_by_label
+from afkb_mapping.image_regions import order_by_label
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
-from afkb_surfaces.cells import CELL, DEPTH, X, Z
-from afkb_surfaces.grouping import SUPPORT
+from afkb_surfaces.cells import DEPTH, Cells, X, Y, Z
 
 SAMPLES = 48
 SEEN_THROUGH = 2
 """Samples on the line between two parts that may show what lies behind the plane."""
-PART_SAMPLES = 150
+PART_SAMPLES = 240
 MIN_CELLS = 3
 
 
 @kernel
 def _seen_through(
     depth_m: NDArray[np.float32],
-    start: NDArray[np.float64],
-    end: NDArray[np.float64],
+    start: NDArray[np.float32],
+    end: NDArray[np.float32],
     height_m: float,
     intrinsics: NDArray[np.float64],
     T: NDArray[np.float64],
+    noise: float,
 ) -> int:
     """Samples of the image line whose depth lies clearly behind the plane at height_m."""
     fx, fy, cx, cy = intrinsics
@@ -45,13 +45,13 @@ def _seen_through(
             count += 1
             continue
         plane = (height_m - T[2, 3]) / rise
-        if z > plane + 0.03 + 3.0 * depth_sigma(plane):
+        if z > plane + 0.03 + 3.0 * noise * depth_sigma(plane):
             count += 1
     return count
 
 
 @kernel
-def _closest(p: NDArray[np.float64], q: NDArray[np.float64]) -> tuple[float, int, int]:
+def _closest(p: NDArray[np.float32], q: NDArray[np.float32]) -> tuple[float, int, int]:
     """Smallest squared distance between points (N, 2+) of two sets, and which these are."""
     best, bi, bj = np.inf, 0, 0
     for i in range(p.shape[0]):
@@ -64,80 +64,113 @@ def _closest(p: NDArray[np.float64], q: NDArray[np.float64]) -> tuple[float, int
 
 def join_fragments(
     depth_m: NDArray[np.float32],
-    cells: NDArray[np.float64],
+    cells: Cells,
     labels: NDArray[np.int32],
-    kinds: NDArray[np.int8],
+    supports: NDArray[np.bool_],
     intrinsics: NDArray[np.float64],
     T_map_camera: NDArray[np.float64],
     step_m: float,
     gap_m: float,
 ) -> NDArray[np.int32]:
-    """Labels (rows, cols) in which coplanar supports with only an occluder between them are one."""
-    n = int(labels.max()) + 1
-    wanted = np.zeros(n, np.bool_)
-    wanted[labels[kinds == SUPPORT]] = True
-    u, v, starts = pixels_by_label(labels, wanted, np.ones(n, np.int64))
-    sizes = np.diff(starts)
-    largest_first = np.argsort(-sizes, kind="stable")[: int((sizes >= MIN_CELLS).sum())]
-    target = _joined(
-        largest_first, u, v, starts, depth_m, cells, intrinsics, T_map_camera, step_m, gap_m
+    """The label (n_labels,) that each joins: coplanar, with only an occluder between them.
+
+    `labels` (rows, cols) of cells; `supports` (n_labels,): those that may join.
+    """
+    order, starts = order_by_label(labels.ravel(), supports)
+    return _joined(
+        order,
+        starts,
+        depth_m,
+        cells.planes,
+        cells.size_px,
+        intrinsics,
+        T_map_camera,
+        step_m,
+        gap_m,
+        cells.noise,
     )
-    return target[labels]
 
 
 @kernel
 def _joined(
-    largest_first: NDArray[np.int64],
-    u: NDArray[np.int32],
-    v: NDArray[np.int32],
+    order: NDArray[np.int64],
     starts: NDArray[np.int64],
     depth_m: NDArray[np.float32],
-    cells: NDArray[np.float64],
+    planes: NDArray[np.float32],
+    size_px: int,
     intrinsics: NDArray[np.float64],
     T_map_camera: NDArray[np.float64],
     step_m: float,
     gap_m: float,
+    noise: float,
 ) -> NDArray[np.int32]:
-    """The label (n_labels,) that each joins: of the largest part that it goes with, or its own.
+    """Each part, largest first, takes in those smaller ones that go with it.
 
-    Pixels (u, v) of label k begin at `starts[k]`.
+    Flat indexes of the cells of label k begin at `order[starts[k]]`.
     """
-    target = np.arange(len(starts) - 1).astype(np.int32)
-    heights, depths = np.zeros(len(target)), np.zeros(len(target))
-    places = [np.zeros((0, 4))]
-    for k in largest_first:
-        part = slice(starts[k], starts[k + 1])
-        heights[k], depths[k], place = _place_of(u[part], v[part], cells)
-        places.append(place)
-    for i in range(len(largest_first)):
-        big = largest_first[i]
-        for j in range(i + 1, len(largest_first)):
-            small = largest_first[j]
-            step = step_m + 0.4 * depth_sigma(depths[small])
-            if target[small] != small or abs(heights[big] - heights[small]) > step:
+    sizes = starts[1:] - starts[:-1]
+    target = np.arange(len(sizes)).astype(np.int32)
+    parts = np.argsort(-sizes, kind="mergesort")[: (sizes >= MIN_CELLS).sum()]
+    heights, depths = np.zeros(len(parts)), np.zeros(len(parts))
+    places = np.empty((len(parts), PART_SAMPLES, 4), np.float32)
+    counts, boxes = np.zeros(len(parts), np.int64), np.empty((len(parts), 4), np.float32)
+    for i in range(len(parts)):
+        own = order[starts[parts[i]] : starts[parts[i] + 1]]
+        heights[i], depths[i], counts[i] = _sample(own, planes, size_px, places[i])
+        _box_of(places[i, : counts[i]], boxes[i])
+    for i in range(len(parts)):
+        big = places[i, : counts[i]]
+        for j in range(i + 1, len(parts)):
+            step = step_m + 0.4 * noise * depth_sigma(depths[j])
+            if target[parts[j]] != parts[j] or abs(heights[i] - heights[j]) > step:
                 continue
-            squared, m, n = _closest(places[i + 1], places[j + 1])
+            if _apart(boxes[i], boxes[j]) > gap_m * gap_m:
+                continue
+            squared, m, n = _closest(big, places[j, : counts[j]])
             if squared > gap_m * gap_m:
                 continue
-            start, end = places[i + 1][m, 2:], places[j + 1][n, 2:]
-            behind = _seen_through(depth_m, start, end, heights[big], intrinsics, T_map_camera)
+            start, end = big[m, 2:], places[j, n, 2:]
+            behind = _seen_through(depth_m, start, end, heights[i], intrinsics, T_map_camera, noise)
             if behind <= SEEN_THROUGH:
-                target[small] = target[big]
+                target[parts[j]] = target[parts[i]]
     return target
 
 
 @kernel
-def _place_of(
-    u: NDArray[np.int32], v: NDArray[np.int32], cells: NDArray[np.float64]
-) -> tuple[float, float, NDArray[np.float64]]:
-    """Median height and depth of cells, m, and a sample (N, 4) of their x, y and pixel u, v."""
-    heights, depths = np.empty(len(u)), np.empty(len(u))
-    for k in range(len(u)):
-        heights[k], depths[k] = cells[v[k], u[k], Z], cells[v[k], u[k], DEPTH]
-    thin = max(1, len(u) // PART_SAMPLES)
-    place = np.empty(((len(u) + thin - 1) // thin, 4))
-    for n in range(len(place)):
-        i, j = v[n * thin], u[n * thin]
-        place[n, 0], place[n, 1] = cells[i, j, X], cells[i, j, X + 1]
-        place[n, 2], place[n, 3] = (j + 0.5) * CELL, (i + 0.5) * CELL
-    return percentile(heights, 50.0), percentile(depths, 50.0), place
+def _sample(
+    own: NDArray[np.int64], planes: NDArray[np.float32], size_px: int, place: NDArray[np.float32]
+) -> tuple[float, float, int]:
+    """Median height and depth of cells, m; writes x, y and pixel u, v of some, and counts these."""
+    cols, size = planes.shape[2], len(own)
+    thin = (2 * size + PART_SAMPLES - 1) // PART_SAMPLES
+    heights, depths = np.empty(PART_SAMPLES), np.empty(PART_SAMPLES)
+    n = 0
+    for k in range(size):
+        # where a row of cells ends is where a gap begins
+        ends = k == 0 or k == size - 1 or own[k - 1] != own[k] - 1 or own[k + 1] != own[k] + 1
+        if n == PART_SAMPLES or not (ends or k % thin == 0):
+            continue
+        r, c = own[k] // cols, own[k] % cols
+        heights[n], depths[n] = planes[r, Z, c], planes[r, DEPTH, c]
+        place[n, 0], place[n, 1] = planes[r, X, c], planes[r, Y, c]
+        place[n, 2], place[n, 3] = (c + 0.5) * size_px, (r + 0.5) * size_px
+        n += 1
+    return percentile(heights[:n], 50.0), percentile(depths[:n], 50.0), n
+
+
+@kernel
+def _box_of(place: NDArray[np.float32], box: NDArray[np.float32]) -> None:
+    """Lowest and highest x and y of points."""
+    box[0] = box[1] = place[0, 0]
+    box[2] = box[3] = place[0, 1]
+    for k in range(1, len(place)):
+        box[0], box[1] = min(box[0], place[k, 0]), max(box[1], place[k, 0])
+        box[2], box[3] = min(box[2], place[k, 1]), max(box[3], place[k, 1])
+
+
+@kernel
+def _apart(p: NDArray[np.float32], q: NDArray[np.float32]) -> float:
+    """Squared distance of two boxes, m²."""
+    dx = max(p[0] - q[1], q[0] - p[1], np.float32(0))
+    dy = max(p[2] - q[3], q[2] - p[3], np.float32(0))
+    return float(dx * dx + dy * dy)

@@ -1,196 +1,213 @@
-"""Cells to surfaces, and surfaces back to pixels."""
+"""Cells to surfaces: what kind each is of, which neighbours lie on one surface, and what joins."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
 from afkb_mapping.sensor_noise import depth_sigma
-from afkb_surfaces.cells import CELL, COUNT, DEPTH, NX, NZ, SIGMA_TILT, A, B, C, X, Z
+from afkb_surfaces.cells import COUNT, DEPTH, NX, NY, NZ, SIGMA_TILT, X, Y, Z
 
 SAME_WALL_COS = 0.92
 """A wall's normal stays this close to where it was first seen, so that corners part walls."""
 NONE, FLOOR, SUPPORT, UPRIGHT = 0, 1, 2, 3
+FLOOR_LABEL = 1
+RIGHT, DOWN = 1, 2
+"""Bits of a link: the neighbour that lies on one surface with a cell."""
+MOST_SLACK_RAD, MOST_UPRIGHT_SLACK_RAD = 0.35, 0.17
+"""However unsure a normal is, it is never taken to be this much off."""
+ZERO, ONE = np.float32(0), np.float32(1)
+NOWHERE = np.zeros(0, np.float32)
+
+
+def classify(
+    planes: NDArray[np.float32], tilt_rad: float, upright_rad: float, floor_m: float, noise: float
+) -> NDArray[np.int8]:
+    """Kind (rows, cols) of each cell: floor, upward-facing, upright, or none of these."""
+    limits = np.array(
+        [math.cos(tilt_rad), math.sin(tilt_rad), math.sin(upright_rad), math.cos(upright_rad)],
+        np.float32,
+    )
+    return _kinds(planes, limits, np.float32(floor_m), np.float32(noise))
 
 
 @kernel
-def classify(
-    cells: NDArray[np.float64], tilt_rad: float, upright_rad: float, floor_m: float
+def _kinds(
+    planes: NDArray[np.float32], limits: NDArray[np.float32], floor_m: np.float32, noise: np.float32
 ) -> NDArray[np.int8]:
-    """Kind of each cell: floor, upward-facing, upright, or none of these."""
-    rows, cols = cells.shape[:2]
-    kinds = np.zeros((rows, cols), np.int8)
+    rows, cols = planes.shape[0], planes.shape[2]
+    kinds = np.empty((rows, cols), np.int8)
+    level_cos, level_sin, upright_sin, upright_cos = limits[0], limits[1], limits[2], limits[3]
+    half, sixth, most = np.float32(0.5), np.float32(1 / 6), np.float32(MOST_SLACK_RAD)
+    most_upright, some = np.float32(MOST_UPRIGHT_SLACK_RAD), np.float32(0.7) * noise
     for r in range(rows):
+        p, out = planes[r], kinds[r]
         for c in range(cols):
-            cell = cells[r, c]
-            if cell[COUNT] == 0:
-                continue
-            slack = min(2.0 * cell[SIGMA_TILT], 0.35)
-            tilt = np.arccos(min(max(cell[NZ], -1.0), 1.0))
-            if tilt < tilt_rad + slack:
-                near_floor = abs(cell[Z]) < floor_m + 2.0 * depth_sigma(cell[DEPTH]) * 0.35
-                kinds[r, c] = FLOOR if near_floor else SUPPORT
-            elif abs(tilt - 0.5 * np.pi) < upright_rad + min(slack, 0.17):
-                kinds[r, c] = UPRIGHT
+            s = min(np.float32(2) * p[SIGMA_TILT, c], most)
+            t = min(s, most_upright)
+            # of angles this small, the first terms of sine and cosine are as good as these
+            level = level_cos * (ONE - half * s * s) - level_sin * (s - sixth * s * s * s)
+            upright = upright_sin * (ONE - half * t * t) + upright_cos * t
+            up = p[NZ, c]
+            near_floor = abs(p[Z, c]) < floor_m + some * np.float32(depth_sigma(p[DEPTH, c]))
+            kind = UPRIGHT if abs(up) < upright else NONE
+            kind = (FLOOR if near_floor else SUPPORT) if up > level else kind
+            out[c] = kind if p[COUNT, c] > ZERO else NONE
     return kinds
 
 
 @kernel
-def _one_surface(p: NDArray[np.float64], q: NDArray[np.float64], kind: int, step_m: float) -> bool:
-    """Whether two neighbouring cells of a kind lie on one surface."""
-    tolerance = step_m + depth_sigma(p[DEPTH])
-    forth = back = 0.0
-    for k in range(3):
-        d = q[X + k] - p[X + k]
-        forth += d * p[NX + k]
-        back += d * q[NX + k]
-    if kind == UPRIGHT:
-        return min(abs(forth), abs(back)) < tolerance
-    return min(abs(q[Z] - p[Z]), max(abs(forth), abs(back))) < tolerance
+def links_of(
+    planes: NDArray[np.float32], kinds: NDArray[np.int8], step_m: float, noise: float
+) -> NDArray[np.uint8]:
+    """For each cell (rows, cols), whether it is one surface with the cells RIGHT and DOWN of it."""
+    rows, cols = kinds.shape
+    links = np.zeros((rows, cols), np.uint8)
+    step, times = np.float32(step_m), np.float32(noise)
+    for r in range(rows):
+        p, k = planes[r], kinds[r]
+        _link(p[:, :-1], p[:, 1:], k[:-1], k[1:], step, times, RIGHT, links[r, :-1])
+        if r + 1 < rows:
+            _link(p, planes[r + 1], k, kinds[r + 1], step, times, DOWN, links[r])
+    return links
 
 
 @kernel
-def _dot(p: NDArray[np.float64], q: NDArray[np.float64]) -> float:
-    return p[NX] * q[NX] + p[NX + 1] * q[NX + 1] + p[NZ] * q[NZ]
+def _link(
+    p: NDArray[np.float32],
+    q: NDArray[np.float32],
+    p_kinds: NDArray[np.int8],
+    q_kinds: NDArray[np.int8],
+    step_m: np.float32,
+    noise: np.float32,
+    bit: int,
+    links: NDArray[np.uint8],
+) -> None:
+    """Set a bit where cell i of p and cell i of q are of one kind and lie on one surface."""
+    for i in range(len(links)):
+        kind = p_kinds[i]
+        if kind < SUPPORT or kind != q_kinds[i]:
+            continue
+        dx, dy, dz = q[X, i] - p[X, i], q[Y, i] - p[Y, i], q[Z, i] - p[Z, i]
+        forth = abs(dx * p[NX, i] + dy * p[NY, i] + dz * p[NZ, i])
+        back = abs(dx * q[NX, i] + dy * q[NY, i] + dz * q[NZ, i])
+        off = min(forth, back) if kind == UPRIGHT else min(abs(dz), max(forth, back))
+        if off < step_m + noise * np.float32(depth_sigma(min(p[DEPTH, i], q[DEPTH, i]))):
+            links[i] |= bit
 
 
 @kernel
 def grow(
-    cells: NDArray[np.float64], kinds: NDArray[np.int8], step_m: float
+    planes: NDArray[np.float32], kinds: NDArray[np.int8], links: NDArray[np.uint8]
 ) -> tuple[NDArray[np.int32], int]:
-    """Connected cells of one surface: labels (rows, cols) from 1, and their number.
+    """Connected cells of one surface: labels (rows, cols) from 1, and the highest.
 
-    The floor is always label 1, whether it is seen or not.
+    The floor is always label 1, whether it is seen or not. Filled span by span along rows.
     """
     rows, cols = kinds.shape
     labels = np.zeros((rows, cols), np.int32)
-    stack = np.empty((rows * cols, 2), np.int32)
-    count = 1
+    normals = np.empty((rows, cols, 3), np.float32)
+    for r in range(rows):
+        for k in range(3):
+            for c in range(cols):
+                normals[r, c, k] = planes[r, NX + k, c]
+    stack = np.empty((2 * rows * cols, 2), np.int32)
+    count = FLOOR_LABEL
     for r0 in range(rows):
         for c0 in range(cols):
             kind = kinds[r0, c0]
             if kind == FLOOR:
-                labels[r0, c0] = 1
+                labels[r0, c0] = FLOOR_LABEL
             if kind < SUPPORT or labels[r0, c0] > 0:
                 continue
             count += 1
-            labels[r0, c0] = count
-            seed = cells[r0, c0]
+            facing = normals[r0, c0] if kind == UPRIGHT else NOWHERE
             stack[0, 0], stack[0, 1] = r0, c0
             top = 1
             while top > 0:
                 top -= 1
                 r, c = stack[top, 0], stack[top, 1]
-                for dr, dc in ((0, 1), (1, 0), (0, -1), (-1, 0)):
-                    i, j = r + dr, c + dc
-                    if not (0 <= i < rows and 0 <= j < cols):
-                        continue
-                    if labels[i, j] != 0 or kinds[i, j] != kind:
-                        continue
-                    if kind == UPRIGHT and _dot(seed, cells[i, j]) < SAME_WALL_COS:
-                        continue
-                    if _one_surface(cells[r, c], cells[i, j], kind, step_m):
-                        labels[i, j] = count
-                        stack[top, 0], stack[top, 1] = i, j
-                        top += 1
+                if labels[r, c] == 0:
+                    top = _fill_span(normals, links, labels, r, c, count, facing, stack, top)
     return labels, count
 
 
 @kernel
-def pixel_labels(
-    depth_m: NDArray[np.float32],
-    cells: NDArray[np.float64],
-    labels: NDArray[np.int32],
-    kinds: NDArray[np.int8],
-    softness_m: float,
-) -> NDArray[np.int32]:
-    """Label of each pixel that lies on the plane of its cell, or of a cell next to it: (H, W).
-
-    Pixels with no floor or support next to them keep 0: of upright planes the cells suffice.
-    """
-    rows, cols = labels.shape
-    out = np.zeros(depth_m.shape, np.int32)
-    planes, names = np.empty((9, 3)), np.empty(9, np.int32)
-    for r in range(rows):
-        for c in range(cols):
-            n = _planes_around(r, c, cells, labels, kinds, planes, names)
-            if n == 0:
-                continue
-            here = labels[r, c]
-            p = cells[r, c]
-            for v in range(r * CELL, (r + 1) * CELL):
-                for u in range(c * CELL, (c + 1) * CELL):
-                    z = depth_m[v, u]
-                    if not z > 0:
-                        continue
-                    w, best = 1.0 / z, 2.5 * depth_sigma(z) + softness_m
-                    if here > 0 and abs(p[A] * u + p[B] * v + p[C] - w) * z * z < best:
-                        out[v, u] = here
-                        continue
-                    for k in range(n):
-                        off = abs(planes[k, 0] * u + planes[k, 1] * v + planes[k, 2] - w) * z * z
-                        if off < best:
-                            best = off
-                            out[v, u] = names[k]
+def kinds_of_labels(
+    labels: NDArray[np.int32], kinds: NDArray[np.int8], highest: int
+) -> NDArray[np.int8]:
+    """Kind (highest + 1,) of the cells of each label; NONE for 0."""
+    out = np.zeros(highest + 1, np.int8)
+    for r in range(labels.shape[0]):
+        for c in range(labels.shape[1]):
+            if labels[r, c] > 0:
+                out[labels[r, c]] = kinds[r, c]
     return out
 
 
 @kernel
-def _planes_around(
-    r: int,
-    c: int,
-    cells: NDArray[np.float64],
-    labels: NDArray[np.int32],
-    kinds: NDArray[np.int8],
-    planes: NDArray[np.float64],
-    names: NDArray[np.int32],
-) -> int:
-    """Number of labelled cells within one cell, 0 where none is level; writes planes and labels."""
-    n, level = 0, False
-    for i in range(max(r - 1, 0), min(r + 2, labels.shape[0])):
-        for j in range(max(c - 1, 0), min(c + 2, labels.shape[1])):
-            if labels[i, j] > 0:
-                level |= kinds[i, j] != UPRIGHT
-                p = cells[i, j]
-                planes[n, 0], planes[n, 1], planes[n, 2] = p[A], p[B], p[C]
-                names[n] = labels[i, j]
-                n += 1
-    return n if level else 0
-
-
-@kernel
-def points_of(
-    u: NDArray[np.int32],
-    v: NDArray[np.int32],
-    depth_m: NDArray[np.float32],
-    intrinsics: NDArray[np.float64],
-    T_map_camera: NDArray[np.float64],
-) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
-    """Depths (N,) and points (N, 3) of pixels, map frame."""
-    fx, fy, cx, cy = intrinsics
-    T = T_map_camera
-    depths, points = np.empty(len(u), np.float32), np.empty((len(u), 3))
-    for n in range(len(u)):
-        z = depth_m[v[n], u[n]]
-        x, y = (u[n] - cx) / fx * z, (v[n] - cy) / fy * z
-        depths[n] = z
-        for k in range(3):
-            points[n, k] = T[k, 0] * x + T[k, 1] * y + T[k, 2] * z + T[k, 3]
-    return depths, points
-
-
-@kernel
-def label_spans(
-    cells: NDArray[np.float64], labels: NDArray[np.int32], n_labels: int
-) -> NDArray[np.float64]:
-    """Number of cells of each label, and their lowest and highest centre, m: (n_labels, 3)."""
-    spans = np.zeros((n_labels, 3))
-    spans[:, 1], spans[:, 2] = np.inf, -np.inf
+def renamed(labels: NDArray[np.int32], target: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Labels (rows, cols) with `target` (n_labels,) in place of each."""
+    out = np.empty_like(labels)
     for r in range(labels.shape[0]):
         for c in range(labels.shape[1]):
-            k, z = labels[r, c], cells[r, c, Z]
-            spans[k, 0] += 1
-            spans[k, 1] = min(spans[k, 1], z)
-            spans[k, 2] = max(spans[k, 2], z)
-    return spans
+            out[r, c] = target[labels[r, c]]
+    return out
+
+
+@kernel
+def _fill_span(
+    normals: NDArray[np.float32],
+    links: NDArray[np.uint8],
+    labels: NDArray[np.int32],
+    r: int,
+    c: int,
+    label: int,
+    facing: NDArray[np.float32],
+    stack: NDArray[np.int32],
+    top: int,
+) -> int:
+    """Label what a cell is linked with along its row, and put what joins above and below it.
+
+    Returns the new top of the stack. Of cells that are linked with each other above or below, one
+    is enough.
+    """
+    row = links[r]
+    while c > 0 and row[c - 1] & RIGHT and _joins(normals, labels, r, c - 1, facing):
+        c -= 1
+    above = below = False
+    while True:
+        labels[r, c] = label
+        up = r > 0 and (links[r - 1, c] & DOWN) != 0 and _joins(normals, labels, r - 1, c, facing)
+        down = (row[c] & DOWN) != 0 and _joins(normals, labels, r + 1, c, facing)
+        if up and not (above and links[r - 1, c - 1] & RIGHT):
+            stack[top, 0], stack[top, 1] = r - 1, c
+            top += 1
+        if down and not (below and links[r + 1, c - 1] & RIGHT):
+            stack[top, 0], stack[top, 1] = r + 1, c
+            top += 1
+        above, below = up, down
+        if not (row[c] & RIGHT and _joins(normals, labels, r, c + 1, facing)):
+            return top
+        c += 1
+
+
+@kernel
+def _joins(
+    normals: NDArray[np.float32],
+    labels: NDArray[np.int32],
+    r: int,
+    c: int,
+    facing: NDArray[np.float32],
+) -> bool:
+    """Whether a cell is free, and faces where the wall does that it may join."""
+    if labels[r, c] != 0:
+        return False
+    if len(facing) == 0:
+        return True
+    n = normals[r, c]
+    dot = facing[0] * n[0] + facing[1] * n[1] + facing[2] * n[2]
+    return bool(dot >= SAME_WALL_COS)

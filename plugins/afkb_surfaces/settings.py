@@ -21,6 +21,7 @@ class SurfaceSettings:
     - `softness_m`: how far a cushion or blanket strays from a plane within one 12 px window.
     - `step_m`: height step between neighbouring cells that still is one surface.
     - `gap_m`: parts of one surface that something in front keeps this far apart are one.
+    - `borders`: settle borders to the pixel; without, they are those of cells, in half the time.
     """
 
     normal_to_up_deg: Limits = (-1.0, 0.0, 15.0, 30.0)
@@ -32,6 +33,7 @@ class SurfaceSettings:
     gap_m: float = 0.35
     bound_area_m2: float = 0.10
     footprint_step_m: float = 0.02
+    borders: bool = True
 
     @classmethod
     def from_knowledge(cls, knowledge_base: AfNet) -> SurfaceSettings:

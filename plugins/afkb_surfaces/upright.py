@@ -8,113 +8,144 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, OrientedBox
-from afkb_mapping.image_regions import extent
+from afkb_mapping.image_regions import Rectangle, is_cut
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentiles
 from afkb_mapping.sensor_noise import depth_sigma
 from afkb_mapping.trapezoids import membership
-from afkb_surfaces.cells import CELL, DEPTH, X, Z
+from afkb_surfaces.cells import DEPTH, Cells, X, Y, Z
 from afkb_surfaces.settings import SurfaceSettings
+
+SAMPLES = 300
+"""Cells of a wall that are looked at; more would tell no more."""
+
+CELLS, LOW, HIGH, SIZE, NEAREST, MEDIAN, X0, Y0, X1, Y1, RMS, C0, C1, R0, R1 = range(15)
+"""Number of cells; lowest and highest height and the size of a cell, m; nearest and median depth,
+m; ends of the segment, m; rms about it, m; the span in cells, both ends included."""
+N_MEASURES = 15
 
 
 @kernel
-def _span_of(
-    u: NDArray[np.int32], v: NDArray[np.int32], cells: NDArray[np.float64], focal_px: float
-) -> tuple[float, float, float, float, float, NDArray[np.float64]]:
-    """Lowest and highest height, size of a cell, nearest and median depth, and places (N, 2), m."""
-    n = len(u)
-    heights, depths, xy = np.empty(n), np.empty(n), np.empty((n, 2))
+def measure_walls(
+    order: NDArray[np.int64],
+    starts: NDArray[np.int64],
+    planes: NDArray[np.float32],
+    least_cells: int,
+    least_height_m: float,
+    cell_rad: float,
+) -> NDArray[np.float64]:
+    """Measures (n_labels, N_MEASURES); CELLS is 0 for what is smaller than either limit.
+
+    Flat indexes of the cells of label k are `order[starts[k]:starts[k + 1]]`.
+    """
+    out = np.zeros((len(starts) - 1, N_MEASURES))
+    cols = planes.shape[2]
+    for k in range(len(out)):
+        n = starts[k + 1] - starts[k]
+        if n < least_cells:
+            continue
+        m = out[k]
+        m[C0] = m[R0] = np.inf
+        m[C1] = m[R1] = -np.inf
+        thin = (n + SAMPLES - 1) // SAMPLES
+        p = np.empty(((n + thin - 1) // thin, 4))
+        for i in range(n):
+            r = order[starts[k] + i] // cols
+            c = order[starts[k] + i] - r * cols
+            m[R0], m[R1] = min(m[R0], r), max(m[R1], r)
+            m[C0], m[C1] = min(m[C0], c), max(m[C1], c)
+            if i % thin == 0:
+                q = p[i // thin]
+                q[0], q[1] = planes[r, X, c], planes[r, Y, c]
+                q[2], q[3] = planes[r, Z, c], planes[r, DEPTH, c]
+        low, high = percentiles(p[:, 2], 1.0, 99.0)
+        m[NEAREST], m[MEDIAN] = percentiles(p[:, 3], 1.0, 50.0)
+        m[SIZE] = cell_rad * m[MEDIAN]
+        m[LOW], m[HIGH] = low - 0.5 * m[SIZE], high + 0.5 * m[SIZE]
+        if m[HIGH] - m[LOW] < least_height_m:
+            continue
+        m[CELLS] = n
+        m[X0], m[Y0], m[X1], m[Y1], m[RMS] = fitted_segment(p, m[SIZE])
+    return out
+
+
+@kernel
+def fitted_segment(
+    xy: NDArray[np.float64], margin_m: float
+) -> tuple[float, float, float, float, float]:
+    """Ends x0, y0, x1, y1 of the line through points (N, 2+) seen from above, and rms about it, m.
+
+    It runs along the widest spread of the points, strays left out.
+    """
+    n = len(xy)
+    mx, my = xy[:, 0].sum() / n, xy[:, 1].sum() / n
+    xx = cross = yy = 0.0
     for k in range(n):
-        cell = cells[v[k], u[k]]
-        heights[k], depths[k] = cell[Z], cell[DEPTH]
-        xy[k, 0], xy[k, 1] = cell[X], cell[X + 1]
-    low, high = percentiles(heights, 1.0, 99.0)
-    nearest, depth = percentiles(depths, 1.0, 50.0)
-    size = CELL * depth / focal_px
-    return low - 0.5 * size, high + 0.5 * size, size, nearest, depth, xy
+        dx, dy = xy[k, 0] - mx, xy[k, 1] - my
+        xx, cross, yy = xx + dx * dx, cross + dx * dy, yy + dy * dy
+    turn = 0.5 * math.atan2(2.0 * cross, xx - yy)
+    ax, ay = math.cos(turn), math.sin(turn)
+    t, total = np.empty(n), 0.0
+    for k in range(n):
+        dx, dy = xy[k, 0] - mx, xy[k, 1] - my
+        t[k] = dx * ax + dy * ay
+        total += (dy * ax - dx * ay) ** 2
+    start, end = percentiles(t, 0.5, 99.5)
+    start, end = start - 0.5 * margin_m, end + 0.5 * margin_m
+    return mx + start * ax, my + start * ay, mx + end * ax, my + end * ay, math.sqrt(total / n)
 
 
 def upright_detection(
-    u: NDArray[np.int32],
-    v: NDArray[np.int32],
-    cells: NDArray[np.float64],
-    focal_px: float,
+    m: NDArray[np.float64],
+    cells: Cells,
+    returning: Rectangle,
     settings: SurfaceSettings,
     detector: str,
 ) -> Detection | None:
-    """The bound that a connected set of upright cells, columns u and rows v, shows, or None.
+    """The bound that measures (N_MEASURES,) of upright cells speak of, or None.
 
     Its height is what is seen of it; where the image cuts it, that is a lower bound.
     """
-    low, high, size, nearest, depth, xy = _span_of(u, v, cells, focal_px)
-    p = membership(high - low, settings.bound_height_m)
-    if p <= 0:
+    tall = float(m[HIGH] - m[LOW])
+    p = membership(tall, settings.bound_height_m)
+    x0, y0, x1, y1 = m[X0 : Y1 + 1].tolist()
+    length = math.hypot(x1 - x0, y1 - y0)
+    if p <= 0 or length * tall < settings.bound_area_m2:
         return None
-    segment, rms = fitted_segment(xy, size)
-    along = segment[1] - segment[0]
-    length = math.hypot(along[0], along[1])
-    if length * (high - low) < settings.bound_area_m2:
-        return None
-    centre = segment.mean(axis=0)
-    sigma = depth_sigma(depth)
-    c0, r0, c1, r1 = extent(u, v)
-    rows, cols = cells.shape[:2]
-    low = max(low, 0.0)
-    middle = (float(centre[0]), float(centre[1]), (low + high) / 2)
-    steps = max(2, int(length / settings.footprint_step_m))
-    t = np.linspace(0, 1, steps)[:, None]
+    low, high, rms = max(float(m[LOW]), 0.0), float(m[HIGH]), float(m[RMS])
+    middle = ((x0 + x1) / 2, (y0 + y1) / 2, (low + high) / 2)
+    size, covariance = cells.size_px, np.zeros((3, 3))
+    covariance[0, 0] = covariance[1, 1] = (cells.noise * depth_sigma(m[MEDIAN])) ** 2 + 1e-4
+    covariance[2, 2] = 0.01
+    c0, c1, r0, r1 = (int(v) for v in m[C0 : R1 + 1].tolist())
+    image_box = (c0 * size, r0 * size, (c1 + 1) * size, (r1 + 1) * size)
     return Detection(
         detector=detector,
         affordances={"BlockAbility": 0.97 * p},
-        box=OrientedBox(middle, (length, 0.02 + 2 * rms, high - low), math.atan2(*along[::-1])),
+        box=OrientedBox(middle, (length, 0.02 + 2 * rms, high - low), math.atan2(y1 - y0, x1 - x0)),
         position_xyz=np.array(middle),
-        covariance_xyz=np.diag([sigma**2 + 1e-4, sigma**2 + 1e-4, 0.01]),
-        footprint_xy=segment[0] * (1 - t) + segment[1] * t,
-        n_pixels=len(u) * CELL * CELL,
-        range_m=nearest,
-        image_box=(c0 * CELL, r0 * CELL, c1 * CELL, r1 * CELL),
-        segment_xy=segment,
-        cut_by_image=r0 == 0 or c0 == 0 or r1 == rows or c1 == cols,
-        measures={"height": high - low, "length": length, "rms": rms},
+        covariance_xyz=covariance,
+        footprint_xy=_along(x0, y0, x1, y1, max(2, int(length / settings.footprint_step_m))),
+        n_pixels=int(m[CELLS]) * size * size,
+        range_m=float(m[NEAREST]),
+        image_box=image_box,
+        segment_xy=np.array([[x0, y0], [x1, y1]]),
+        cut_by_image=is_cut(image_box, _to_cells(returning, size)),
+        measures={"height": tall, "length": length, "rms": rms},
     )
 
 
-def fitted_segment(xy: NDArray[np.float64], margin_m: float) -> tuple[NDArray[np.float64], float]:
-    """End points (2, 2) of the line through points seen from above, and their rms about it, m."""
-    centre, moments = _moments(xy)
-    _, axes = np.linalg.eigh(moments)
-    start, end, rms = _along(xy, centre, axes)
-    ends = np.array([[start - 0.5 * margin_m], [end + 0.5 * margin_m]])
-    return centre + ends * axes[:, 1], rms
-
-
 @kernel
-def _moments(xy: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Mean (2,) and covariance (2, 2) of points (N, 2); of fewer than three, a round one."""
-    n = len(xy)
-    centre, moments = np.zeros(2), np.zeros((2, 2))
+def _along(x0: float, y0: float, x1: float, y1: float, n: int) -> NDArray[np.float64]:
+    """Points (n, 2) evenly from one to the other."""
+    out = np.empty((n, 2))
     for k in range(n):
-        centre += xy[k]
-    centre /= n
-    for k in range(n):
-        dx, dy = xy[k, 0] - centre[0], xy[k, 1] - centre[1]
-        moments[0, 0] += dx * dx
-        moments[0, 1] += dx * dy
-        moments[1, 1] += dy * dy
-    moments[1, 0] = moments[0, 1]
-    return centre, (moments / (n - 1) if n > 2 else np.eye(2))
+        t = k / (n - 1)
+        out[k, 0], out[k, 1] = x0 + t * (x1 - x0), y0 + t * (y1 - y0)
+    return out
 
 
-@kernel
-def _along(
-    xy: NDArray[np.float64], centre: NDArray[np.float64], axes: NDArray[np.float64]
-) -> tuple[float, float, float]:
-    """Where points begin and end along axes[:, 1], strays left out, and rms along axes[:, 0]."""
-    t, total = np.empty(len(xy)), 0.0
-    for k in range(len(xy)):
-        dx, dy = xy[k, 0] - centre[0], xy[k, 1] - centre[1]
-        t[k] = dx * axes[0, 1] + dy * axes[1, 1]
-        off = dx * axes[0, 0] + dy * axes[1, 0]
-        total += off * off
-    start, end = percentiles(t, 0.5, 99.5)
-    return start, end, math.sqrt(total / len(xy))
+def _to_cells(returning: Rectangle, size: int) -> Rectangle:
+    """The part of a rectangle that whole cells cover, px: what cells can reach."""
+    u0, v0, u1, v1 = returning
+    return -(-u0 // size) * size, -(-v0 // size) * size, u1 // size * size, v1 // size * size

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from afkb.flow import Detection, View
 from afkb.knowledge import AfNet
-from afkb_surfaces.cells import COUNT, A, B, C, cell_planes, cell_sums
+from afkb_surfaces.cells import COUNT, A, B, C, Cells
 from afkb_surfaces.detector import SurfaceDetector
+from afkb_surfaces.outline import ring_area
 from afkb_surfaces.settings import SurfaceSettings
 from depth_samples import CAMERA, FLOOR, Box, table, view_of
 
@@ -98,14 +101,57 @@ def test_a_cell_plane_is_the_least_squares_fit_of_inverse_depth() -> None:
     view = view_of([FLOOR], rng=np.random.default_rng(5))
     assert view.depth_m is not None
     intrinsics = np.array([CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy])
-    cells = cell_planes(cell_sums(view.depth_m), intrinsics, view.T_map_camera, 0.004)
+    planes = Cells.of(view.depth_m, intrinsics, view.T_map_camera, 0.004).planes
     r, c = 90, 80
-    assert cells[r, c, COUNT] > 0
+    assert planes[r, COUNT, c] > 0
     v, u = np.mgrid[4 * r - 4 : 4 * r + 8, 4 * c - 4 : 4 * c + 8].reshape(2, -1)
     z = view.depth_m[v, u].astype(float)
     design = np.column_stack([u, v, np.ones(len(u))])[z > 0]
     expected, *_ = np.linalg.lstsq(design, 1 / z[z > 0], rcond=None)
-    assert cells[r, c, [A, B, C]] == pytest.approx(expected, rel=1e-5, abs=1e-9)
+    found = design @ planes[r, [A, B, C], c]
+    assert found == pytest.approx(design @ expected, rel=1e-4)
+
+
+def test_a_table_has_a_border_rings_and_pixels_that_are_its_own() -> None:
+    (found,) = supports(view_of([FLOOR, table(1.6, 0.0, 0.73)], rng=np.random.default_rng(2)))
+    assert found.border["real"] > 0.95
+    assert sum(found.border.values()) == pytest.approx(1.0)
+    (ring,) = found.rings_xy
+    assert ring_area(ring) == pytest.approx(0.96, rel=0.03)
+    assert ring.min(axis=0) == pytest.approx([1.2, -0.6], abs=0.015)
+    exact = view_of([table(1.6, 0.0, 0.73)]).depth_m
+    assert exact is not None and found.pixels is not None
+    assert len(found.pixels) == found.n_pixels
+    assert (exact.ravel()[found.pixels] > 0).mean() > 0.995
+
+
+def test_what_stands_before_a_table_occludes_it_and_makes_no_hole() -> None:
+    screen = Box((0.9, -0.2, 0.0), (0.95, 0.2, 0.95))
+    (found,) = supports(view_of([FLOOR, table(1.6, 0.0, 0.73), screen]))
+    assert found.border["occluded"] > 0.1
+    assert len(found.rings_xy) == 1
+
+
+def test_without_borders_a_table_is_the_same_to_a_cell() -> None:
+    detector = SurfaceDetector(replace(SurfaceSettings(), borders=False))
+    view = view_of([FLOOR, table(1.6, 0.1, 0.73)], rng=np.random.default_rng(3))
+    _, found = (d for d in detector.detect(view) if d.affords("SupportAbility"))
+    assert found.position_xyz == pytest.approx([1.6, 0.1, 0.73], abs=0.02)
+    assert found.box.size_xyz[:2] == pytest.approx((1.2, 0.8), abs=0.08)
+    assert ring_area(found.rings_xy[0]) == pytest.approx(0.96, rel=0.1)
+
+
+def test_a_blind_border_of_the_sensor_cuts_what_reaches_it() -> None:
+    view = view_of([FLOOR, table(1.6, -0.75, 0.73)])
+    assert view.depth_m is not None
+    depth = view.depth_m.copy()
+    depth[:, -8:] = 0
+    blind = View(0, 0.0, np.eye(4), depth, CAMERA, view.T_base_camera, T_map_base=np.eye(4))
+    (found,) = supports(blind)
+    assert found.image_box is not None and found.image_box[2] == 632
+    assert found.cut_by_image
+    assert found.border["cut"] > 0.05
+    assert found.border["missing"] < 0.01
 
 
 def test_limits_come_from_the_ontology() -> None:

@@ -1,0 +1,113 @@
+"""Moments of small cells of a depth image: one pass over its pixels, all that cells need of them.
+
+A plane is linear in inverse depth, and inverse depth has nearly constant noise, so a plane is an
+unweighted least-squares fit of w = 1/z to pixel coordinates, and moments are enough for it. Loops
+run along rows over one to four arrays each, so that the compiler makes vector code of them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb_mapping.kernels import kernel
+
+CELL = 4
+"""Pixels along a cell."""
+
+N, SU, SV, SUU, SUV, SVV, SW, SUW, SVW, SWW = range(10)
+"""Moments of a cell: number of pixels with depth, and sums over these; u and v from its middle."""
+
+ZERO, ONE = np.float32(0.0), np.float32(1.0)
+INNER, OUTER = np.float32(0.5), np.float32(1.5)
+"""Distance of a cell's inner and outer pixels from its middle, px."""
+FULL = np.float32(CELL * CELL)
+FULL_SUU = np.float32(CELL * CELL * 1.25)
+
+
+@kernel
+def cell_moments(depth_m: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Moments (rows + 2, 10, cols + 2) of the cells of a depth image (H, W), in m and px.
+
+    A margin of one empty cell lies around them.
+    """
+    rows, cols = depth_m.shape[0] // CELL, depth_m.shape[1] // CELL
+    moments = np.zeros((rows + 2, 10, cols + 2), np.float32)
+    w = np.empty((CELL, CELL * cols), np.float32)
+    sums = np.empty((4, CELL * cols), np.float32)
+    for r in range(rows):
+        for i in range(CELL):
+            _invert(depth_m[r * CELL + i], w[i])
+        _add_down(w[0], w[1], w[2], w[3], sums)
+        m = moments[r + 1]
+        _add_across(sums[0], m[N])
+        _add_across(sums[1], m[SW])
+        _lean_across(sums[1], m[SUW])
+        _add_across(sums[2], m[SVW])
+        _add_across(sums[3], m[SWW])
+        for c in range(cols):
+            if m[N, c + 1] == FULL:
+                m[SUU, c + 1] = m[SVV, c + 1] = FULL_SUU
+            elif m[N, c + 1] > ZERO:
+                _add_places(w, c, m)
+    return moments
+
+
+@kernel
+def _invert(z: NDArray[np.float32], w: NDArray[np.float32]) -> None:
+    """1/z of a row of pixels, 0 where there is no depth."""
+    for u in range(len(w)):
+        w[u] = ONE / z[u] if z[u] > ZERO else ZERO
+
+
+@kernel
+def _add_down(
+    a: NDArray[np.float32],
+    b: NDArray[np.float32],
+    c: NDArray[np.float32],
+    d: NDArray[np.float32],
+    sums: NDArray[np.float32],
+) -> None:
+    """Of four rows of w, column by column: how many, sum, sum times v, sum of squares."""
+    count, total, lean, squares = sums[0], sums[1], sums[2], sums[3]
+    for u in range(len(count)):
+        above = (ONE if a[u] > ZERO else ZERO) + (ONE if b[u] > ZERO else ZERO)
+        count[u] = above + (ONE if c[u] > ZERO else ZERO) + (ONE if d[u] > ZERO else ZERO)
+    for u in range(len(count)):
+        total[u] = a[u] + b[u] + c[u] + d[u]
+    for u in range(len(count)):
+        lean[u] = OUTER * (d[u] - a[u]) + INNER * (c[u] - b[u])
+    for u in range(len(count)):
+        squares[u] = a[u] * a[u] + b[u] * b[u] + c[u] * c[u] + d[u] * d[u]
+
+
+@kernel
+def _add_across(x: NDArray[np.float32], out: NDArray[np.float32]) -> None:
+    """Sum of each cell's four columns."""
+    for c in range(len(x) // 4):
+        out[c + 1] = x[4 * c] + x[4 * c + 1] + x[4 * c + 2] + x[4 * c + 3]
+
+
+@kernel
+def _lean_across(x: NDArray[np.float32], out: NDArray[np.float32]) -> None:
+    """Sum of each cell's four columns times u."""
+    for c in range(len(x) // 4):
+        out[c + 1] = OUTER * (x[4 * c + 3] - x[4 * c]) + INNER * (x[4 * c + 2] - x[4 * c + 1])
+
+
+@kernel
+def _add_places(w: NDArray[np.float32], c: int, m: NDArray[np.float32]) -> None:
+    """Moments of u and v alone, of a cell in which some pixels have no depth."""
+    su = sv = suu = suv = svv = ZERO
+    for i in range(CELL):
+        v = np.float32(i) - OUTER
+        for j in range(CELL):
+            if w[i, c * CELL + j] > ZERO:
+                u = np.float32(j) - OUTER
+                su += u
+                sv += v
+                suu += u * u
+                suv += u * v
+                svv += v * v
+    k = c + 1
+    m[SU, k], m[SV, k], m[SUU, k], m[SUV, k], m[SVV, k] = su, sv, suu, suv, svv
