@@ -82,7 +82,8 @@ class GroundedDetector:
         self, thing: Seen, measures: Mapping[str, float], prior: Mapping[str, float]
     ) -> list[Detection]:
         first = thing.first
-        certain = 1.0 if first.seen_whole else CUT
+        # What may be no thing at all affords nothing more surely than it is one.
+        certain = max(thing.affordances.values()) * (1.0 if first.seen_whole else CUT)
         says = {f: certain * p for f, p in
                 afforded(self._groundings, thing.kinds, measures).items()}  # fmt: skip
         for feature, p in prior.items():
