@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 from afkb.errors import EvidenceError
@@ -12,9 +12,14 @@ from afkb.inference.objects import ObjectNetwork
 from afkb.inference.relations import RelationshipNetwork
 from afkb.inference.rooms import RoomNetwork
 from afkb.knowledge import SOMETHING_ELSE, AfNet, EvidenceClass
+from afkb.ontology.names import BY_MEASURES
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+SIZE_AND_PLACE = ("dimensions", "clearance", "proximity", "orientation")
+"""Primitives of measures that the network observes by itself, or that tell of no kind of thing."""
+
+
+@dataclass(frozen=True, eq=False)
 class Network:
     """Posteriors over what things are, what else is there, and what rooms are for.
 
@@ -35,8 +40,35 @@ class Network:
         )
 
     def known(self, affordances: Mapping[str, float]) -> dict[str, float]:
-        """Those affordances that the ontology has: a stranger's detector may report others."""
-        return {f: p for f, p in affordances.items() if f in self.knowledge_base.features}
+        """Those affordances that tell what a thing is, beside its size and height.
+
+        A stranger's detector may report what the ontology doesn't have. A hint that is less
+        probable than not was made from what the thing may be, or can't be seen better: it says
+        nothing against. What size, height and clearance alone decide, as a seat, is no evidence
+        of its own beside size and height.
+        """
+        return {
+            name: p
+            for name, p in affordances.items()
+            if name in self.knowledge_base.features
+            and name not in self._told_by_size
+            and not (p < 0.5 and self.knowledge_base.features[name].is_weak)
+        }
+
+    @cached_property
+    def _told_by_size(self) -> frozenset[str]:
+        """Features that measures of size and place decide."""
+        measures = self.knowledge_base.measures
+        return frozenset(
+            feature.name
+            for feature in self.knowledge_base.features.values()
+            if feature.grounded_by == (BY_MEASURES,)
+            and feature.parameters
+            and all(
+                name in measures and measures[name].primitive in SIZE_AND_PLACE
+                for name in feature.parameters
+            )
+        )
 
     def category_posterior(
         self,
@@ -83,17 +115,18 @@ class Network:
         """Names of the evidence classes that such a thing counts for, in order of name.
 
         It counts once for each feature that it affords, for the class that asks for the largest
-        surface; and by its narrowest features: a closed package, which is also a container,
-        counts as closed.
+        surface; and by its narrowest features that are counted: a closed package, which is also a
+        container, counts as closed.
         """
         self.objects.check(affordances, size_xyz, top_height_m)
+        counted = {evidence.feature for evidence in self.knowledge_base.evidence_classes.values()}
         found: dict[str, EvidenceClass] = {}
         for evidence in self.knowledge_base.evidence_classes.values():
             if evidence.holds(size_xyz, top_height_m):
                 other = found.setdefault(evidence.feature, evidence)
                 if evidence.least_area_m2 > other.least_area_m2:
                     found[evidence.feature] = evidence
-        afforded = self.objects.afforded(affordances)
+        afforded = self.objects.afforded({f: p for f, p in affordances.items() if f in counted})
         return tuple(sorted(found[feature].name for feature in afforded if feature in found))
 
     def evidence_looked_for(self, features: Iterable[str]) -> tuple[str, ...]:

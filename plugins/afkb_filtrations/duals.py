@@ -38,7 +38,15 @@ class DualPredictor:
         """One hypothesis per group of anchors and predicted feature, in the ontology's order."""
         network = network_of(self._knowledge_base)
         faintest = self._knowledge_base.parameters["FaintestHypothesis"]
-        afforded = [set(network.objects.afforded(d.affordances)) for d in detections]
+        telling = {dual.evidence for dual in self._knowledge_base.duals}
+        afforded = [
+            set(
+                network.objects.afforded(
+                    {f: d.affordances[f] for f in telling & set(d.affordances)}
+                )
+            )
+            for d in detections
+        ]
         seen = set().union(*afforded)
         duals = [
             dual

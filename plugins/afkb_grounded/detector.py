@@ -82,8 +82,7 @@ class GroundedDetector:
         self, thing: Seen, measures: Mapping[str, float], prior: Mapping[str, float]
     ) -> list[Detection]:
         first = thing.first
-        # What may be no thing at all affords nothing more surely than it is one.
-        certain = max(thing.affordances.values()) * (1.0 if first.seen_whole else CUT)
+        certain = sureness(thing)
         says = {f: certain * p for f, p in
                 afforded(self._groundings, thing.kinds, measures).items()}  # fmt: skip
         for feature, p in prior.items():
@@ -106,6 +105,18 @@ class GroundedDetector:
                     )
                 )
         return found
+
+
+def sureness(thing: Seen) -> float:
+    """Probability that there is a thing of these measures at all.
+
+    A body or surface affords nothing more surely than it is one; what isn't seen whole may be
+    larger, which the detector of bodies has counted already.
+    """
+    if PART in thing.kinds:
+        return 1.0
+    there = max(thing.affordances.values())
+    return there if BODY in thing.kinds or thing.first.seen_whole else there * CUT
 
 
 def measures_of(thing: Seen, view: View) -> dict[str, float]:
