@@ -26,6 +26,8 @@ def show(
 ) -> None:
     """Show one term with all that is stated of it, or the names of all.
 
+    Of an affordance also what its grounding measures, of what, and between which values.
+
     Example: afkb ontology show Mug
     """
     base = state_of(ctx).host.knowledge_base.extended(extensions or [])
@@ -36,7 +38,7 @@ def show(
         else:
             print_table(["", "names"], [(what, ", ".join(n)) for what, n in names.items()])
         return
-    statements = base.statements_about(name)
+    statements = base.statements_about(name) | _measures(base, name)
     if as_json:
         print_json(statements)
     else:
@@ -44,9 +46,25 @@ def show(
         print_table(["property", "value"], rows, title=base.iri(name))
 
 
+def _measures(base: AfNet, name: str) -> dict[str, list[str]]:
+    """The fuzzy ranges of a feature's grounding, a line each."""
+    feature = base.features.get(name)
+    if feature is None or not feature.parameters:
+        return {}
+    lines = []
+    for measure, t in sorted(feature.parameters.items()):
+        known = base.measures.get(measure)
+        unit = f" {known.measured_in}" if known and known.measured_in != "1" else ""
+        lines.append(
+            f"{measure}: 0 up to {t.z1:g}, 1 from {t.n1:g} to {t.n2:g}, 0 from {t.z2:g}{unit}"
+        )
+    return {"measures": lines}
+
+
 def _items(base: AfNet) -> dict[str, list[Statement]]:
     return {
         "features": list(base.features.values()),
+        "measures": list(base.measures.values()),
         "scales": list(base.scales.values()),
         "categories": list(base.categories.values()),
         "duals": list(base.duals),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 """Least and greatest typical value, or mean and standard deviation, in the unit of the key."""
@@ -54,6 +54,8 @@ class Category(Entry):
 
 
 Subject = Literal["body", "surface", "opening", "upright", "part", "gap"]
+Subjects = Annotated[list[Subject], BeforeValidator(lambda v: [v] if isinstance(v, str) else v)]
+"""One kind of thing, or several."""
 
 
 class Feature(Entry):
@@ -70,7 +72,7 @@ class Feature(Entry):
     broader: Word | None = None
     examples: list[Text] = []
     parameters: dict[Word, Four] = {}
-    grounded_on: Subject | list[Subject] | None = None
+    grounded_on: Subjects | None = None
     grounded_by: Literal["detector", "measures", "weak measures", "nothing"] | None = None
     grounding_strength: float | None = None
     grounding_reason: Text | None = None
@@ -81,7 +83,7 @@ class Measure(Entry):
 
     definition: Text
     measure_name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
-    measure_of: Subject | list[Subject]
+    measure_of: Subjects
     measured_in: Text | None = None
     primitive: Text | None = None
 

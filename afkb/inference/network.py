@@ -14,7 +14,6 @@ from afkb.inference.rooms import RoomNetwork
 from afkb.knowledge import SOMETHING_ELSE, AfNet, EvidenceClass
 from afkb.ontology.names import BY_MEASURES
 
-
 SIZE_AND_PLACE = ("dimensions", "clearance", "proximity", "orientation")
 """Primitives of measures that the network observes by itself, or that tell of no kind of thing."""
 

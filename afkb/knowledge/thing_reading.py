@@ -17,7 +17,15 @@ from afkb.knowledge.item_reading import (
 )
 from afkb.knowledge.model import Afbit, Category, Feature, Measure, Scale, Trapezoid
 from afkb.ontology.categories import movability_of
-from afkb.ontology.names import BY_MEASURES, GROUNDED_BY, KINDS, SKOS, SUBJECTS, fragment
+from afkb.ontology.names import (
+    BY_DETECTOR,
+    BY_MEASURES,
+    GROUNDED_BY,
+    KINDS,
+    SKOS,
+    SUBJECTS,
+    fragment,
+)
 
 USUAL_STRENGTH = 0.8
 """Probability of a feature whose measures all fit, where its grounding states none."""
@@ -63,10 +71,11 @@ def _grounding(facts: Facts, iri: str) -> _Grounding:
     """What is grounded on something, and says no more, is grounded by its measures."""
     grounded_on = tuple(w for w in SUBJECTS if w in facts.many(iri, "groundedOn"))
     grounded_by = tuple(w for w in GROUNDED_BY if w in facts.many(iri, "groundedBy"))
+    usual = USUAL_STRENGTH if grounded_on and BY_DETECTOR not in grounded_by else 0.0
     return _Grounding(
         grounded_by=grounded_by or ((BY_MEASURES,) if grounded_on else ()),
         grounded_on=grounded_on,
-        grounding_strength=facts.number(iri, "groundingStrength", default=USUAL_STRENGTH),
+        grounding_strength=facts.number(iri, "groundingStrength", default=usual),
         grounding_reason=facts.text(iri, "groundingReason", default=""),
     )
 

@@ -17,6 +17,7 @@ from afkb_grounded.body_kernel import (
     sphere_fit,
     top_from_above,
 )
+from afkb_grounded.texture import texture_measures
 from afkb_mapping.depth_points import points_of_pixels
 from afkb_mapping.sensor_noise import depth_sigma
 
@@ -43,6 +44,7 @@ def body_measures(body: Detection, view: View) -> dict[str, float]:
     if body.pixels is None or view.depth_m is None or len(body.pixels) < LEAST_POINTS:
         return found
     found["missing_depth_share"] = missing_within(body.pixels, view.depth_m)
+    found |= texture_measures(body.pixels, view.color)
     thin = max(1, len(body.pixels) // MOST_POINTS)
     pixels, width = body.pixels[::thin], np.int32(view.depth_m.shape[1])
     depths, points = points_of_pixels(pixels % width, pixels // width, view)
