@@ -86,7 +86,7 @@ class GroundedDetector:
         says = {f: certain * p for f, p in
                 afforded(self._groundings, thing.kinds, measures).items()}  # fmt: skip
         for feature, p in prior.items():
-            says[feature] = max(p, says.get(feature, 0.0))
+            says[feature] = max(certain * p, says.get(feature, 0.0))
         says = {f: p for f, p in sorted(says.items()) if p >= LEAST_CLAIM}
         firm = {f: p for f, p in says.items() if f not in self._weak}
         weak = {f: p for f, p in says.items() if f in self._weak}
