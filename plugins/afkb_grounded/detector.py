@@ -115,7 +115,7 @@ def sureness(thing: Seen) -> float:
     """
     if PART in thing.kinds:
         return 1.0
-    there = max(thing.affordances.values())
+    there = max(thing.affordances.values(), default=1.0)
     return there if BODY in thing.kinds or thing.first.seen_whole else there * CUT
 
 
