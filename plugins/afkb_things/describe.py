@@ -8,6 +8,7 @@ from afkb.flow import Detection
 from afkb_mapping.bodies import Body
 from afkb_mapping.from_above import box_around, on_grid, sides_from_above
 from afkb_mapping.order_statistics import percentile
+from afkb_things.primitives import box_of, primitive_of
 from afkb_things.settings import ThingSettings
 from afkb_things.wholeness import wholeness
 
@@ -22,6 +23,9 @@ def body_detection(body: Body, attached: float, detector: str) -> Detection:
     free = min(1.0, max(0.0, (ATTACHED[1] - attached) / (ATTACHED[1] - ATTACHED[0])))
     base, top = body.base_m, percentile(body.points[:, 2], 98.0)
     box = box_around(on_grid(body.points, 0.005), top, 0.0, max(top - base, 0.0))
+    shape = primitive_of(body, box)
+    if shape is not None:
+        box = box_of(shape)
     spread = body.sigma_m**2 + 1e-4
     return Detection(
         detector=detector,
@@ -35,6 +39,7 @@ def body_detection(body: Body, attached: float, detector: str) -> Detection:
         image_box=body.image_box,
         cut_by_image=body.cut_by_image,
         measures=_measures(body, base, top, attached),
+        primitive=shape,
         pixels=(body.v * np.int32(body.shape[1]) + body.u).astype(np.int32),
     )
 
