@@ -12,24 +12,22 @@ from afkb_things.primitives import box_of, primitive_of
 from afkb_things.settings import ThingSettings
 from afkb_things.wholeness import wholeness
 
-ATTACHED = (0.08, 0.22)
-"""Share of a body's outline beyond which its surface goes on: below the first it stands free,
-above the second it is part of something larger."""
 HIGHEST_M = ThingSettings().above_m[1]
 
 
 def body_detection(body: Body, attached: float, detector: str) -> Detection:
     """A body from its base up to its top; `attached` is the share of its outline that goes on."""
-    free = min(1.0, max(0.0, (ATTACHED[1] - attached) / (ATTACHED[1] - ATTACHED[0])))
+    sides = sides_from_above(body.points)
     base, top = body.base_m, percentile(body.points[:, 2], 98.0)
     box = box_around(on_grid(body.points, 0.005), top, 0.0, max(top - base, 0.0))
     shape = primitive_of(body, box)
     if shape is not None:
         box = box_of(shape)
+    whole = wholeness(body, top - base, HIGHEST_M, sides[0], attached)
     spread = body.sigma_m**2 + 1e-4
     return Detection(
         detector=detector,
-        affordances={"DisposeAbility": free * wholeness(body, top - base, HIGHEST_M)},
+        affordances={"DisposeAbility": whole},
         box=box,
         position_xyz=np.array(box.center_xyz),
         covariance_xyz=np.diag([spread, spread, 0.25 * spread]),
@@ -38,15 +36,16 @@ def body_detection(body: Body, attached: float, detector: str) -> Detection:
         range_m=percentile(body.depth_m, 1.0),
         image_box=body.image_box,
         cut_by_image=body.cut_by_image,
-        measures=_measures(body, base, top, attached),
+        measures=_measures(body, base, top, *sides, attached),
         primitive=shape,
         pixels=(body.v * np.int32(body.shape[1]) + body.u).astype(np.int32),
     )
 
 
-def _measures(body: Body, base_m: float, top_m: float, attached: float) -> dict[str, float]:
+def _measures(
+    body: Body, base_m: float, top_m: float, length: float, width: float, attached: float
+) -> dict[str, float]:
     """Heights, sides and surroundings; no `support_height` where that isn't seen."""
-    length, width = sides_from_above(body.points)
     measures = {
         "stand": float(body.stand),
         "bottom": base_m,

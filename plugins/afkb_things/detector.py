@@ -10,13 +10,14 @@ from afkb.flow import Detection, View
 from afkb_mapping.bodies import Body
 from afkb_mapping.image_regions import pixels_by_label
 from afkb_things.clusters import clusters_from_above
-from afkb_things.describe import ATTACHED, body_detection
+from afkb_things.describe import body_detection
 from afkb_things.hidden import Loose, things_on_hidden_supports, things_on_the_floor
 from afkb_things.rejoin import rejoined
 from afkb_things.scene import Scene
 from afkb_things.settings import ThingSettings
 from afkb_things.split import split
 from afkb_things.surroundings import mark, surroundings
+from afkb_things.wholeness import ATTACHED
 
 
 class ThingDetector:

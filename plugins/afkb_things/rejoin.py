@@ -23,7 +23,7 @@ NEAR_M = 0.03
 """Parts of one hollow lie this near to each other, seen from above."""
 LEVEL_M = 0.015
 """Rims of one hollow, and tops of one body, are this level."""
-RIM_SHARE, INSIDE_SHARE = 0.6, 0.5
+RIM_SHARE, INSIDE_SHARE = 0.6, 0.4
 """Of a hollow that parts make together: how far around the rim is seen, and how much of what is
 seen through the rim's plane lies below it; a notch between closed bodies is mostly their tops."""
 LEAST_BEHIND = 5
