@@ -95,7 +95,10 @@ class Entity:
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """A straight piece of wall on the floor plane: end points, m; fitted from laser or depth."""
+    """A straight piece of wall on the floor plane: end points, m; fitted from laser or depth.
+
+    `sigmas`: standard deviations of its line's offset (m) and direction (rad), or None.
+    """
 
     id: str
     start_xy: tuple[float, float]
@@ -103,6 +106,7 @@ class Bound:
     observations: int
     generated_by: tuple[str, ...]
     room: str | None = None
+    sigmas: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

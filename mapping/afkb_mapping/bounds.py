@@ -1,8 +1,14 @@
-"""Bounds of the map: wall segments of many views, merged into one straight piece per wall side."""
+"""Bounds of the map: wall segments of many views, merged into one straight piece per wall side.
+
+Each segment has a covariance: of its line's offset, and by its length of its direction. Two are one
+wall if these allow it, and the better known one counts for more.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +19,13 @@ Array = NDArray[np.float64]
 
 OFFSET_M = 0.08
 """Segments whose ends lie this near one line are one wall; the two sides of a wall are further."""
-ANGLE_RAD = np.deg2rad(8.0)
-"""Greatest angle between them: short segments in noise turn that far, corners further."""
+GATE = 9.21
+"""Of squared differences over their variances: 99 % of two measurements of one line differ by less
+(chi-squared, offset and direction)."""
+POSE_SIGMA = (0.02, np.deg2rad(1.0))
+"""Standard deviations, m and rad, by which a view's pose moves and turns all of its segments."""
+UNSTATED_SIGMA_M = 0.02
+"""Of the offset of a segment that says nothing of it."""
 WALL_M = 1.0
 GAP_M = 0.3
 """Ends this near are one wall with something before it; a doorway is wider."""
@@ -24,28 +35,41 @@ GAP_M = 0.3
 class _Wall:
     """Evidence for one wall: moments of all its segments, from which its line is fitted.
 
-    `mass`: summed lengths, m. `first`: (2,), `second`: (2, 2) moments, m² and m³.
+    `mass`: summed lengths over the variances of their offsets, 1/m. `first`: (2,), `second`: (2, 2)
+    moments with these weights. `information`: (2,) summed inverse variances of offset (1/m²) and
+    direction (1/rad²).
     """
 
     ends: Array
     mass: float
     first: Array
     second: Array
+    information: Array
     observations: int
     detectors: set[str] = field(default_factory=set)
 
     @classmethod
-    def of(cls, segment: Array, detector: str) -> _Wall:
+    def of(cls, segment: Array, sigma_m: float, detector: str) -> _Wall:
         length = float(np.linalg.norm(segment[1] - segment[0]))
         middle, half = segment.mean(axis=0), (segment[1] - segment[0]) / 2
         spread = np.outer(middle, middle) + np.outer(half, half) / 3
-        return cls(segment.copy(), length, length * middle, length * spread, 1, {detector})
+        mass = length / (sigma_m**2 + POSE_SIGMA[0] ** 2)
+        turn_sigma = math.sqrt(12) * sigma_m / length
+        information = np.array([sigma_m, turn_sigma]) ** -2
+        return cls(segment.copy(), mass, mass * middle, mass * spread, information, 1, {detector})
+
+    @property
+    def sigmas(self) -> tuple[float, float]:
+        """Standard deviations of its line's offset (m) and direction (rad)."""
+        offset, turn = np.sqrt(1 / self.information + np.square(POSE_SIGMA) / self.observations)
+        return float(offset), float(turn)
 
     def absorb(self, other: _Wall) -> None:
         """Take over another wall's evidence; the line is fitted anew, the ends reach as far."""
         self.mass += other.mass
         self.first = self.first + other.first
         self.second = self.second + other.second
+        self.information = self.information + other.information
         self.observations += other.observations
         self.detectors |= other.detectors
         middle = self.first / self.mass
@@ -61,6 +85,7 @@ class BoundMerger:
     def __init__(self) -> None:
         self._walls: list[_Wall] = []
         self._ends = np.zeros((64, 2, 2))
+        self._variances = np.zeros((64, 2))
 
     def add(self, detection: Detection, place: str | None = None) -> None:
         """Take in one detected bound; `place`, the id of the robot place, is for the caller's log.
@@ -69,16 +94,19 @@ class BoundMerger:
         """
         if detection.segment_xy is None:
             raise ValueError(f"{detection.detector}: a bound needs segment_xy")
-        self.add_segment(detection.segment_xy, detection.detector)
+        sigma_m = across_sigma(detection.segment_xy, detection.covariance_xyz)
+        self.add_segment(detection.segment_xy, detection.detector, sigma_m)
 
-    def add_segment(self, segment_xy: Array, detector: str) -> None:
-        """Take in one segment (2, 2), m, map frame."""
+    def add_segment(
+        self, segment_xy: Array, detector: str, sigma_m: float = UNSTATED_SIGMA_M
+    ) -> None:
+        """Take in one segment (2, 2), m, map frame, whose line is known to `sigma_m`."""
         segment = np.asarray(segment_xy, dtype=np.float64)
         if np.linalg.norm(segment[1] - segment[0]) < 1e-6:
             return
-        wall = _Wall.of(segment, detector)
+        wall = _Wall.of(segment, sigma_m, detector)
         # What the wall grew by may close the gap to the next: hence until nothing fits any more.
-        while (index := self._match(wall.ends)) is not None:
+        while (index := self._match(wall)) is not None:
             known = self._remove(index)
             known.absorb(wall)
             wall = known
@@ -87,7 +115,9 @@ class BoundMerger:
     def _append(self, wall: _Wall) -> None:
         if len(self._walls) == len(self._ends):
             self._ends = np.concatenate([self._ends, np.zeros_like(self._ends)])
+            self._variances = np.concatenate([self._variances, np.zeros_like(self._variances)])
         self._ends[len(self._walls)] = wall.ends
+        self._variances[len(self._walls)] = np.square(wall.sigmas)
         self._walls.append(wall)
 
     def _remove(self, index: int) -> _Wall:
@@ -95,15 +125,21 @@ class BoundMerger:
         wall, last = self._walls[index], self._walls.pop()
         if last is not wall:
             self._walls[index], self._ends[index] = last, last.ends
+            self._variances[index] = self._variances[len(self._walls)]
         return wall
 
-    def _match(self, segment: Array) -> int | None:
+    def _match(self, segment: _Wall) -> int | None:
         """Index of the wall that a segment continues or repeats, the one it fits best."""
-        if not self._walls:
+        n = len(self._walls)
+        if not n:
             return None
-        offset, gap, angle = _relation(self._ends[: len(self._walls)], segment)
-        fits = (offset < OFFSET_M) & (gap < GAP_M) & (angle < ANGLE_RAD)
-        return int(np.argmin(np.where(fits, offset, np.inf))) if fits.any() else None
+        relation = _relation(self._ends[:n], segment.ends)
+        variances = self._variances[:n] + np.square(segment.sigmas)
+        # The further a short segment lies along a long one, the more its direction matters.
+        variances[:, 0] += relation.lever**2 * variances[:, 1]
+        apart = relation.offset**2 / variances[:, 0] + relation.angle**2 / variances[:, 1]
+        fits = (relation.farthest < OFFSET_M) & (relation.gap < GAP_M) & (apart < GATE)
+        return int(np.argmin(np.where(fits, apart, np.inf))) if fits.any() else None
 
     def part(self, start_xy: Array, end_xy: Array) -> bool:
         """Whether a wall crosses the straight line between two points (2,), m.
@@ -133,16 +169,36 @@ class BoundMerger:
                 end_xy=(float(w.ends[1, 0]), float(w.ends[1, 1])),
                 observations=w.observations,
                 generated_by=tuple(sorted(w.detectors)),
+                sigmas=w.sigmas,
             )
             for number, w in enumerate(walls, start=1)
         ]
 
 
-def _relation(walls: Array, segment: Array) -> tuple[Array, Array, Array]:
-    """Of each wall (N, 2, 2) to a segment (2, 2): offset (m), gap along the line (m), angle (rad).
+def across_sigma(segment_xy: Array, covariance_xyz: Array) -> float:
+    """Standard deviation of a segment's line across itself, m, from its middle's covariance."""
+    along = segment_xy[1] - segment_xy[0]
+    normal = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-9)
+    variance = float(normal @ covariance_xyz[:2, :2] @ normal)
+    return math.sqrt(variance) if variance > 0 else UNSTATED_SIGMA_M
 
-    Both are held against the line of the longer one, as a short one's direction is worth little.
+
+class _Relation(NamedTuple):
+    """Of each wall (N,) to a segment, each held against the line of the longer of the two.
+
+    `offset`: of the shorter one's middle, and `farthest`: of its ends, m; `gap` along the line, m;
+    `lever`: of its middle from the longer one's, m; `angle` between them, rad.
     """
+
+    offset: Array
+    farthest: Array
+    gap: Array
+    lever: Array
+    angle: Array
+
+
+def _relation(walls: Array, segment: Array) -> _Relation:
+    """How walls (N, 2, 2) lie to a segment (2, 2); a short one's direction is worth little."""
     spans = walls[:, 1] - walls[:, 0]
     lengths = np.linalg.norm(spans, axis=1)
     span = segment[1] - segment[0]
@@ -156,4 +212,10 @@ def _relation(walls: Array, segment: Array) -> tuple[Array, Array, Array]:
     on_line = (other * along[:, None]).sum(axis=2)
     gap = np.maximum(np.maximum(on_line.min(axis=1) - reach, -on_line.max(axis=1)), 0.0)
     cross = np.abs(spans[:, 0] * span[1] - spans[:, 1] * span[0])
-    return np.abs(across).max(axis=1), gap, np.arcsin(np.clip(cross / (lengths * length), 0, 1))
+    return _Relation(
+        np.abs(across.mean(axis=1)),
+        np.abs(across).max(axis=1),
+        gap,
+        np.abs(on_line.mean(axis=1) - reach / 2),
+        np.arcsin(np.clip(cross / (lengths * length), 0, 1)),
+    )
