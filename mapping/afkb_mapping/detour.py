@@ -23,9 +23,11 @@ DETOUR_M = (2.5, 4.0)
 second."""
 BESIDE_M = 0.4
 """Where the way round begins and ends: this far from the line between the jambs."""
+REACH_M = 0.8
+"""What leads on from a gap begins within this of its middle, chairs beside it or not."""
 POCKET_M2 = 0.3
 """A dead end with less room than this to stand in, clear of its walls, is a niche."""
-CLEARANCE_M = 0.2
+CLEARANCE_M = 0.15
 """A way goes where this much is free to either side: nobody walks through a narrower slit."""
 WINDOW_M = 5.0
 """Nothing further away is looked at."""
@@ -85,30 +87,41 @@ def _way_round(free: Mask, jambs: Array, beside: Array, resolution: float) -> fl
     cv2.line(wall, ends[0].tolist(), ends[1].tolist(), 1, lineType=cv2.LINE_4, thickness=2)
     roomy = ndimage.distance_transform_edt(free) * resolution > CLEARANCE_M
     open_ = roomy & (wall == 0)
-    middle = jambs.mean(axis=0)
-    start, goal = (_free_near(open_, middle + sign * beside) for sign in (1, -1))
-    if start is None or goal is None:
-        return 0.0
     parts, _ = ndimage.label(open_)
+    sizes = np.bincount(parts.ravel())
+    sizes[0] = 0
+    middle = jambs.mean(axis=0)
+    sides = (_beside(parts, sizes, middle, sign * beside, resolution) for sign in (1, -1))
+    start, goal = sides
     least = POCKET_M2 / resolution**2
-    if any((parts == parts[cell]).sum() < least for cell in (start, goal)):
+    if any(cell is None or sizes[parts[cell]] < least for cell in (start, goal)):
         return 0.0
+    assert start is not None and goal is not None
     if parts[start] != parts[goal]:
         return math.inf
     return _distance(open_, start, goal) * resolution
 
 
-def _free_near(open_: Mask, xy: Array) -> tuple[int, int] | None:
-    """The free cell (row, column) nearest to a point, within a few cells."""
-    reach = 6
-    row, col = int(xy[1]), int(xy[0])
+def _beside(
+    parts: NDArray[np.int32],
+    sizes: NDArray[np.intp],
+    middle: Array,
+    beside: Array,
+    resolution: float,
+) -> tuple[int, int] | None:
+    """A cell (row, column) of the largest part that begins on one side of a gap, near it."""
+    reach = round(REACH_M / resolution)
+    col, row = (int(k) for k in middle)
     r0, c0 = max(row - reach, 0), max(col - reach, 0)
-    cells = np.argwhere(open_[r0 : row + reach + 1, c0 : col + reach + 1])
+    cells = np.argwhere(parts[r0 : row + reach + 1, c0 : col + reach + 1]) + np.array([r0, c0])
+    off = cells[:, ::-1] + 0.5 - middle
+    cells = cells[(off @ beside > 0) & (np.hypot(off[:, 0], off[:, 1]) <= reach)]
     if not len(cells):
         return None
-    off = cells + np.array([r0 - row, c0 - col])
-    best = off[np.argmin((off**2).sum(axis=1))]
-    return row + int(best[0]), col + int(best[1])
+    part = parts[cells[:, 0], cells[:, 1]]
+    cells = cells[sizes[part] == sizes[part].max()]
+    nearest = cells[np.argmin(((cells[:, ::-1] + 0.5 - middle - beside) ** 2).sum(axis=1))]
+    return int(nearest[0]), int(nearest[1])
 
 
 def _distance(open_: Mask, start: tuple[int, int], goal: tuple[int, int]) -> float:

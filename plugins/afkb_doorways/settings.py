@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class DoorwaySettings:
     """Trapezoids (z1, n1, n2, z2) of pass-ability, m; the defaults are the ontology's."""
 
-    width_m: Limits = (0.55, 0.7, 1.2, 2.5)
+    width_m: Limits = (0.55, 0.7, 1.8, 2.5)
     height_m: Limits = (1.7, 1.9, 2.4, 3.5)
 
     @classmethod

@@ -122,3 +122,30 @@ def test_a_wall_parts_what_lies_on_either_side_and_furniture_does_not():
     assert merger.part(np.array([-1.0, 0.0]), np.array([1.0, 0.5]))
     assert not merger.part(np.array([-1.0, 2.5]), np.array([1.0, 2.5]))
     assert not merger.part(np.array([2.0, 0.0]), np.array([4.0, 0.0]))
+
+
+def test_a_line_known_well_outweighs_one_known_badly():
+    merger = BoundMerger()
+    merger.add_segment(np.array([[0.0, 0.0], [2.0, 0.0]]), "test", sigma_m=0.005)
+    merger.add_segment(np.array([[0.0, 0.07], [2.0, 0.07]]), "test", sigma_m=0.08)
+    (bound,) = merger.bounds()
+    assert bound.start_xy[1] < 0.01
+
+
+@pytest.mark.parametrize(("sigma_m", "walls"), [(0.005, 2), (0.05, 1)])
+def test_covariance_says_whether_two_lines_are_one_wall(sigma_m, walls):
+    merger = BoundMerger()
+    merger.add_segment(np.array([[0.0, 0.0], [2.0, 0.0]]), "test", sigma_m)
+    merger.add_segment(np.array([[0.5, 0.0], [1.0, 0.07]]), "test", sigma_m)
+    assert len(merger.bounds()) == walls
+
+
+def test_a_wall_is_known_better_the_more_often_it_is_seen():
+    merger, sigmas = BoundMerger(), []
+    for _ in range(4):
+        merger.add_segment(np.array([[0.0, 0.0], [2.0, 0.0]]), "test", sigma_m=0.03)
+        (bound,) = merger.bounds()
+        sigmas.append(bound.sigmas)
+    offsets, turns = np.array(sigmas).T
+    assert offsets[3] == pytest.approx(offsets[0] / 2, rel=0.01)
+    assert (np.diff(turns) < 0).all()
