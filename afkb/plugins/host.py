@@ -120,7 +120,7 @@ class PluginHost:
         return source  # type: ignore[no-any-return]
 
     def detectors(self, names: Sequence[str] = ()) -> list[Detector]:
-        """The named detectors, or all, in order of stage."""
+        """The named detectors, or all that run by default, in order of stage."""
         detectors: list[Detector] = self._collect(self.manager.hook.afkb_detectors)
         return sorted(_chosen("detector", detectors, names), key=lambda d: d.stage)
 
@@ -152,7 +152,10 @@ def _as_path(uri: str) -> str:
 
 
 def _chosen(what: str, items: list[T], names: Sequence[str]) -> list[T]:
-    """The items of those names, all if there are none; `PluginError` for a name nobody has."""
+    """The items of those names; if there are none, all but those with `by_default` False.
+
+    Raises `PluginError` for a name nobody has.
+    """
     by_name: dict[str, T] = {}
     for item in items:
         if item.name in by_name:
@@ -162,4 +165,6 @@ def _chosen(what: str, items: list[T], names: Sequence[str]) -> list[T]:
     if unknown:
         known = ", ".join(sorted(by_name)) or "none"
         raise PluginError(f"no {what} named {unknown[0]!r}; registered: {known}")
-    return [by_name[n] for n in dict.fromkeys(names)] if names else items
+    if not names:
+        return [item for item in items if getattr(item, "by_default", True)]
+    return [by_name[n] for n in dict.fromkeys(names)]

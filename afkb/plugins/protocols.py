@@ -48,6 +48,8 @@ class Detector(Protocol):
     - `stage`: coarse before fine, as the filtrations go: 0 for what stands by itself (supports,
       bounds), 1 for what needs stage 0 (things on supports), 2 for what needs both (hollows of
       things), 3 for what any of these may afford besides.
+    - `by_default`: optional; where it is False, the detector runs only if it is named, as a second
+      implementation of another one does.
     """
 
     @property

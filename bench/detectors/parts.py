@@ -18,6 +18,7 @@ PARTS = (
     "calibration",
     "doorways",
     "cost",
+    "speed",
 )
 """Each is a module of this package."""
 

@@ -22,7 +22,10 @@ def name_of(plugin: object) -> str:
     return str(getattr(plugin, "name", plugin))
 
 
-@pytest.mark.parametrize("detector", HOST.detectors(), ids=name_of)
+DETECTORS = [*HOST.detectors(), *HOST.detectors(["open3d-patches"])]
+
+
+@pytest.mark.parametrize("detector", DETECTORS, ids=name_of)
 def test_detector(detector: Detector) -> None:
     earlier = [d for d in HOST.detectors() if d.stage < detector.stage]
     testing.check_detector(detector, testing.sample_views(), HOST.knowledge_base, earlier)

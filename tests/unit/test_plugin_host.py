@@ -56,6 +56,14 @@ def test_built_in_plugins_come_through_the_entry_points_of_the_distribution(
     assert plugins["mapping"].module == "afkb_mapping.plugin"
 
 
+def test_a_stand_in_runs_only_where_it_is_named(host: PluginHost) -> None:
+    stand_in = Named("stand-in")
+    stand_in.by_default = False
+    host.register(Brings(stand_in), name="theirs")
+    assert stand_in not in host.detectors()
+    assert host.detectors(["stand-in"]) == [stand_in]
+
+
 def test_a_registered_plugin_is_asked_and_handed_the_knowledge_base(host: PluginHost) -> None:
     plugin = Brings(Named("mine"))
     host.register(plugin, name="mine")
