@@ -15,6 +15,7 @@ import json
 import re
 import sys
 from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 
 import cv2
@@ -68,8 +69,13 @@ WITHIN_M, TOP_WITHIN_M = 0.04, 0.06
 
 def meant(word: str, kb: AfNet) -> set[str]:
     """The ontology's categories that a word of the truth means, narrower ones included."""
-    found = {name for name in kb.categories if _chain(name, kb) & set(MEANT[word])}
+    found = kinds_of(MEANT[word], kb)
     return found - set(LOW_TABLES) if word == "table" else found
+
+
+def kinds_of(categories: Iterable[str], kb: AfNet) -> set[str]:
+    """Categories with all narrower ones."""
+    return {name for name in kb.categories if _chain(name, kb) & set(categories)}
 
 
 def _chain(name: str | None, kb: AfNet) -> set[str]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from afkb.flow import Detection
 from afkb.knowledge import AfNet
-from bench.beliefs import MEANT, meant, word_of
+from bench.beliefs import MEANT, kinds_of, word_of
 from bench.detectors.containers import kind_of, thing_at
 from bench.detectors.data import Home
 from bench.detectors.seen import MARGIN_M, inside
@@ -34,6 +34,19 @@ SEVERAL_LEVELS = (
 """Things with real upward surfaces below their top: boards, arms, rims, seats, racks, basins."""
 UNTOLD = ("plant", "floor_lamp", "table_lamp", "towel_rack")
 """Things of which the truth doesn't say whether some part of them is flat."""
+ALSO_MEANT = {
+    "carpet": ("Carpet", "Rug"),
+    "door": ("Door",),
+    "floor_lamp": ("FloorLamp",),
+    "mirror": ("Mirror",),
+    "picture": ("Picture", "Painting"),
+    "plant": ("Plant",),
+    "range_hood": ("RangeHood",),
+    "table_lamp": ("TableLamp",),
+    "towel_rack": ("TowelRail",),
+    "window": ("Window",),
+}
+"""Words of the truth beside those that beliefs are held against."""
 MOSTLY = 0.6
 SAME_BODY_IOU = 0.25
 """A body is seen from one side and misses up to three quarters of its box, as a carton does that is
@@ -48,8 +61,9 @@ class HomeLabels:
     - Contain: right if its centre lies on a hollow or closed small thing, or a large container;
       intrinsically: if on a closed one.
     - Dispose, of a body that was cut out: right if it is one thing, by its box.
-    - Any other feature: what the ontology says of the category of the thing that it lies on,
-      where the truth's word has one.
+    - Any other feature but grasps: what the ontology says of the category of the thing that it
+      lies on, where the truth's word has one. Grasps have no label: the ontology lists the usual
+      ones, and a body that is held otherwise is no error.
     """
 
     def __init__(self, home: Home, kb: AfNet) -> None:
@@ -103,11 +117,12 @@ class HomeLabels:
 
     def _afforded_by(self, thing: dict[str, Any] | None, feature: str) -> bool | None:
         """By the categories that the truth's word means, in the ontology."""
-        if thing is None or word_of(thing) not in MEANT:
+        word = word_of(thing) if thing else ""
+        meant = MEANT.get(word) or ALSO_MEANT.get(word)
+        if meant is None or self._kb.features[feature].kind == "grasp":
             return None
-        word = word_of(thing)
         if word not in self._afforded:
-            kinds = meant(word, self._kb)
+            kinds = kinds_of(meant, self._kb)
             self._afforded[word] = {
                 a.feature
                 for a in self._kb.afbits

@@ -12,8 +12,9 @@ distance, shrink with evidence, and depend on the size of a thing and on whether
               + log_pixels · ln(pixels / 1000) + log_size · ln(longest side / 0.3 m)
               + cut · (1 if the image cuts it, else 0)
 
-It is fitted with a pull towards "as scored", so that few examples change little. The slope isn't
-negative: a better score never becomes a worse probability.
+A detector's curve is fitted with a pull towards "as scored", a feature's own with a pull towards
+that of its detector, so that few examples change little. The slope isn't negative: a better score
+never becomes a worse probability.
 """
 
 from __future__ import annotations
@@ -75,7 +76,21 @@ class CalibratedDetector:
     def __init__(self, scorer: Detector, curves: Mapping[str, Curve]) -> None:
         self.scorer = scorer
         self.curves = curves
-        self.name, self.affordances, self.stage = scorer.name, scorer.affordances, scorer.stage
+
+    @property
+    def name(self) -> str:
+        """The detector's own name."""
+        return self.scorer.name
+
+    @property
+    def affordances(self) -> tuple[str, ...]:
+        """What it can report."""
+        return self.scorer.affordances
+
+    @property
+    def stage(self) -> int:
+        """The detector's own stage."""
+        return self.scorer.stage
 
     def detect(self, view: View, earlier: Sequence[Detection]) -> list[Detection]:
         """What the detector sees, with probabilities that mean what they say."""

@@ -157,10 +157,18 @@ def test_distance_is_counted() -> None:
     assert probability(curve, said(0.7, 4.0)) == pytest.approx(0.3, abs=0.05)
 
 
-def test_few_examples_change_little_and_share_a_curve() -> None:
+def test_few_examples_change_little() -> None:
     few = [sample(0.7, False), sample(0.7, True)]
     assert probability(fitted(few), said(0.7)) == pytest.approx(0.7, abs=0.1)
-    assert set(curves_of(few)) == {ANY}
+
+
+def test_a_feature_that_is_never_right_gets_a_curve_of_its_own() -> None:
+    often = drawn(200, np.random.default_rng(3))
+    never = [replace(s, feature="SitAbility", right=False) for s in often[:40]]
+    curves = curves_of(often + never)
+    assert set(curves) == {ANY, "SitAbility", "SupportAbility"}
+    assert probability(curves["SitAbility"], said(0.8)) < 0.15
+    assert probability(curves["SupportAbility"], said(0.8)) > 0.5
 
 
 def test_a_building_is_judged_by_curves_of_the_others() -> None:
