@@ -40,8 +40,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     samples = gathered(asked)
     sys.stdout.write("\n".join(table(report(samples))) + "\n")
     if not args.dry:
-        source = ", ".join(sorted({s.building for s in samples}))
-        moved = write_tables(asked.host.detectors(asked.detectors), samples, source)
+        moved = write_tables(asked.host.detectors(asked.detectors), samples)
         for path, by in moved.items():
             sys.stdout.write(f"{path}: probabilities moved by up to {by:.3f}\n")
     return 0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import expit
 
-from afkb_mapping.calibration import ANY, Curve
+from afkb_mapping.calibration import Curve
 from bench.calibration.samples import Sample
 
 PULL = (0.25, 4.0, 4.0, 4.0, 4.0, 4.0)
@@ -47,16 +47,16 @@ def _loss(
 
 
 def curves_of(samples: Sequence[Sample]) -> dict[str, Curve]:
-    """Feature to curve for one detector's samples; `ANY` from all of them.
+    """Feature to curve for one detector's samples, each pulled towards that of all of them.
 
-    In `ANY`, a feature counts by the root of its samples: what is claimed most, such as that things
-    burn, should not set what is expected of the others.
+    In the common one, a feature counts by the root of its samples: what is claimed most, such as
+    that things burn, should not set what is expected of the others.
     """
     if not samples:
         return {}
     counts = Counter(s.feature for s in samples)
     together = fitted(samples, weights=[counts[s.feature] ** -0.5 for s in samples])
-    curves = {ANY: together}
-    for feature in sorted(counts):
-        curves[feature] = fitted([s for s in samples if s.feature == feature], together)
-    return curves
+    return {
+        feature: fitted([s for s in samples if s.feature == feature], together)
+        for feature in sorted(counts)
+    }

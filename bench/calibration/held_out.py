@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from afkb_mapping.calibration import ANY
 from bench.calibration.fitting import curves_of
 from bench.calibration.samples import Sample
 
@@ -21,7 +20,7 @@ def held_out(samples: Sequence[Sample]) -> list[Sample]:
         for detector in sorted({s.detector for s in samples}):
             curves = curves_of([s for s in others if s.detector == detector])
             for s in samples:
-                curve = curves.get(s.feature) or curves.get(ANY)
+                curve = curves.get(s.feature)
                 if s.building == building and s.detector == detector and curve:
                     found.append(replace(s, p=s.by(curve)))
     return found

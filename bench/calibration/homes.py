@@ -21,19 +21,12 @@ NO_LABEL = {"BlockAbility", "PassAbility"}
 """The truth of the homes lists neither walls nor doorways."""
 
 
-SEVERAL_LEVELS = (
-    "bathtub",
-    "bed",
-    "coffee_table",
-    "dishwasher",
-    "shelf",
-    "sink",
-    "sofa_chair",
-    "toilet",
-)
-"""Things with real upward surfaces below their top: boards, arms, rims, seats, racks, basins."""
-UNTOLD = ("plant", "floor_lamp", "table_lamp", "towel_rack")
-"""Things of which the truth doesn't say whether some part of them is flat."""
+UNTOLD = (
+    "bathtub", "bed", "coffee_table", "dishwasher", "floor_lamp", "plant", "shelf", "sink",
+    "sofa_chair", "table_lamp", "toilet", "towel_rack",
+)  # fmt: skip
+"""Things with more upward surfaces than the one that the truth gives the height of, real ones or
+not: boards, arms, rims, racks, basins, pots. Of these nothing is told."""
 ALSO_MEANT = {
     "carpet": ("Carpet", "Rug"),
     "door": ("Door",),
@@ -56,8 +49,9 @@ seen from its narrow side; two things in one body, or half a sofa, share less.""
 class HomeLabels:
     """The truth of one home.
 
-    - Support: right if it lies in a thing's box at its top, or at any height of a thing that has
-      several levels; wrong otherwise. The floor isn't judged: it would always be right.
+    - Support: right if it lies in a thing's box at the height of its upward surface; wrong at other
+      heights of what has no other such surface, as a cabinet hasn't, and where nothing is. The
+      floor isn't judged: it would always be right.
     - Contain: right if its centre lies on a hollow or closed small thing, or a large container;
       intrinsically: if on a closed one.
     - Dispose, of a body that was cut out: right if it is one thing, by its box.
@@ -108,12 +102,12 @@ class HomeLabels:
         ]
         if not around:  # a run of furniture, or nothing
             return in_some_thing(claim, self._flat)
-        tops = [h for t in around for h in (t["top_height"], t["max"][2])]
-        if min(abs(height - top) for top in tops) <= HEIGHT_TOLERANCE_M:
+        if any(abs(height - t["top_height"]) <= HEIGHT_TOLERANCE_M for t in around):
             return True
-        if any(t["category"] in SEVERAL_LEVELS for t in around):
-            return True
-        return None if any(t["category"] in UNTOLD for t in around) else False
+        at_box_top = any(abs(height - t["max"][2]) <= HEIGHT_TOLERANCE_M for t in around)
+        if at_box_top or any(t["category"] in UNTOLD for t in around):
+            return None
+        return False
 
     def _afforded_by(self, thing: dict[str, Any] | None, feature: str) -> bool | None:
         """By the categories that the truth's word means, in the ontology."""

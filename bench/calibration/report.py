@@ -43,6 +43,8 @@ def _by_group(samples: Sequence[Sample]) -> dict[str, Any]:
         groups[f"{low:g} to {high:g} m"] = lambda s, low=low, high=high: low <= s.range_m < high
     for name in sorted({s.building for s in samples}):
         groups[name] = lambda s, name=name: s.building == name
+    for name in sorted({s.detector for s in samples}):
+        groups[f"detector {name}"] = lambda s, name=name: s.detector == name
     for pair in sorted({(s.detector, s.feature) for s in samples}):
         groups[" ".join(pair)] = lambda s, pair=pair: (s.detector, s.feature) == pair
     found = {name: [s for s in samples if among(s)] for name, among in groups.items()}

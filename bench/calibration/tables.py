@@ -4,33 +4,33 @@ from __future__ import annotations
 
 import csv
 import inspect
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from afkb_mapping.calibration import ANY, CalibratedDetector
+from afkb_mapping.calibration import CalibratedDetector
 from bench.calibration.fitting import curves_of
 from bench.calibration.samples import Sample
 
 FILE = "calibration.csv"
-COUNTED = ("examples", "right", "things", "buildings", "source")
 
 
-def write_tables(
-    detectors: Sequence[Any], samples: Sequence[Sample], source: str
-) -> dict[Path, float]:
+def write_tables(detectors: Sequence[Any], samples: Sequence[Sample]) -> dict[Path, float]:
     """Write each detector's table into its plugin's folder; returns how far it moved, by file.
 
     That is the largest change of a probability among the samples: what a detector is told by lower
     stages depends on their tables, so that fitting again may move it once more.
     """
-    moved: dict[Path, float] = {}
+    named: dict[Path, set[str]] = defaultdict(set)
     for detector in detectors:
-        own = [s for s in samples if s.detector == detector.name]
+        named[folder_of(detector) / FILE].add(detector.name)
+    moved = {}
+    for path, names in named.items():
+        own = [s for s in samples if s.detector in names]
         if own:
-            path = folder_of(detector) / FILE
-            moved[path] = max(_write(path, detector.name, own, source), moved.get(path, 0.0))
+            moved[path] = _write(path, own)
     return moved
 
 
@@ -40,25 +40,27 @@ def folder_of(detector: Any) -> Path:
     return Path(inspect.getfile(type(scorer))).parent
 
 
-def _write(path: Path, detector: str, samples: Sequence[Sample], source: str) -> float:
-    curves = curves_of(samples)
-    rows = []
-    for feature, curve in curves.items():
-        own = samples if feature == ANY else [s for s in samples if s.feature == feature]
-        rows.append(
-            {
-                "detector": detector,
-                "feature": feature,
-                **asdict(curve),
-                "examples": len(own),
-                "right": sum(s.right for s in own),
-                "things": len({(s.building, s.thing) for s in own}),
-                "buildings": len({s.building for s in own}),
-                "source": source,
-            }
-        )
+def _write(path: Path, samples: Sequence[Sample]) -> float:
+    rows, moved = [], 0.0
+    for detector in sorted({s.detector for s in samples}):
+        of = [s for s in samples if s.detector == detector]
+        for feature, curve in curves_of(of).items():
+            own = [s for s in of if s.feature == feature]
+            moved = max(moved, *(abs(s.p - s.by(curve)) for s in own))
+            rows.append({"detector": detector, "feature": feature, **asdict(curve), **_counts(own)})
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
-    return max(abs(s.p - s.by(curves.get(s.feature) or curves[ANY])) for s in samples)
+    return moved
+
+
+def _counts(samples: Sequence[Sample]) -> dict[str, Any]:
+    """What a curve rests on."""
+    buildings = sorted({s.building for s in samples})
+    return {
+        "examples": len(samples),
+        "right": sum(s.right for s in samples),
+        "things": len({(s.building, s.thing) for s in samples}),
+        "buildings": "; ".join(buildings),
+    }

@@ -28,8 +28,6 @@ from pathlib import Path
 from afkb.flow import Detection, View
 from afkb.plugins.protocols import Detector
 
-ANY = "*"
-"""In a table: every feature that has no row of its own, as its examples were too few."""
 RANGE_M, PIXELS, SIZE_M = 2.0, 1000.0, 0.3
 SURE = 0.995
 """Scores and probabilities stay this far from certain: no table has examples for more."""
@@ -101,15 +99,16 @@ class CalibratedDetector:
         return replace(
             scored,
             affordances={
-                feature: self._curve(feature).probability(terms_of(scored, feature))
-                if score > 0
-                else 0.0
-                for feature, score in scored.affordances.items()
+                feature: _probability(self.curves.get(feature), scored, feature)
+                for feature in scored.affordances
             },
         )
 
-    def _curve(self, feature: str) -> Curve:
-        return self.curves.get(feature) or self.curves.get(ANY) or Curve()
+
+def _probability(curve: Curve | None, scored: Detection, feature: str) -> float:
+    """What is impossible stays so; of a feature that nobody labelled the score is all we know."""
+    score = scored.affordances[feature]
+    return score if curve is None or score <= 0 else curve.probability(terms_of(scored, feature))
 
 
 def calibrated(detector: Detector, table: Path) -> Detector:

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from afkb.flow import Detection, OrientedBox, View
 from afkb_mapping.calibration import (
-    ANY,
     CalibratedDetector,
     Curve,
     calibrated,
@@ -43,7 +42,6 @@ SUPPORT = Detection(
 )
 TABLE = """detector,feature,intercept,slope,log_range,log_pixels,log_size,cut,examples
 told,SupportAbility,1.0,2.0,0,0,0,0,40
-told,*,-1.0,1.0,0,0,0,0,50
 another,SupportAbility,9,9,9,9,9,9,1
 """
 
@@ -106,7 +104,7 @@ def test_a_table_makes_probabilities_of_scores(tmp_path: Path, view: View) -> No
     detector = calibrated(Told(), tmp_path / "calibration.csv")
     (found,) = detector.detect(view, ())
     assert found.affordances["SupportAbility"] == pytest.approx(1 / (1 + np.exp(-1.0)))
-    assert found.affordances["SitAbility"] == pytest.approx(1 / (1 + np.exp(1.0) * 3))
+    assert found.affordances["SitAbility"] == SUPPORT.affordances["SitAbility"]
     assert replace(found, affordances=SUPPORT.affordances).box == SUPPORT.box
     assert (detector.name, detector.stage) == ("told", 0)
 
@@ -118,7 +116,7 @@ def test_without_a_table_a_detector_is_left_alone(tmp_path: Path) -> None:
 
 
 def test_what_is_impossible_stays_so_and_nothing_becomes_certain() -> None:
-    detector = CalibratedDetector(Told(), {ANY: Curve(intercept=50.0)})
+    detector = CalibratedDetector(Told(), dict.fromkeys(Told.affordances, Curve(intercept=50.0)))
     both = replace(SUPPORT, affordances={"SupportAbility": 0.0, "SitAbility": 1.0})
     found = detector.calibrate(both).affordances
     assert found["SupportAbility"] == 0.0 and 0.99 < found["SitAbility"] < 1.0
@@ -159,14 +157,14 @@ def test_distance_is_counted() -> None:
 
 def test_few_examples_change_little() -> None:
     few = [sample(0.7, False), sample(0.7, True)]
-    assert probability(fitted(few), said(0.7)) == pytest.approx(0.7, abs=0.1)
+    assert probability(fitted(few), said(0.7)) == pytest.approx(0.7, abs=0.15)
 
 
 def test_a_feature_that_is_never_right_gets_a_curve_of_its_own() -> None:
     often = drawn(200, np.random.default_rng(3))
     never = [replace(s, feature="SitAbility", right=False) for s in often[:40]]
     curves = curves_of(often + never)
-    assert set(curves) == {ANY, "SitAbility", "SupportAbility"}
+    assert set(curves) == {"SitAbility", "SupportAbility"}
     assert probability(curves["SitAbility"], said(0.8)) < 0.15
     assert probability(curves["SupportAbility"], said(0.8)) > 0.5
 
