@@ -23,16 +23,19 @@ def cells_of(
     pools: NDArray[np.int32],
     kinds: NDArray[np.int16],
     size: int,
+    box: tuple[int, int, int, int],
 ) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.int16]]:
     """Depth, pool and kind of cells (H / size, W / size): of the first pixel of a pool in each.
 
+    Outside of the box all are 0.
     The depth is the mean of those pixels of that pool that lie about as deep; 0 where none is.
     """
     rows, cols = pools.shape[0] // size, pools.shape[1] // size
     depths, of = np.zeros((rows, cols), np.float32), np.zeros((rows, cols), np.int32)
     kind = np.zeros((rows, cols), np.int16)
-    for i in range(rows):
-        for j in range(cols):
+    u0, v0, u1, v1 = box
+    for i in range(v0 // size, min(-(-v1 // size), rows)):
+        for j in range(u0 // size, min(-(-u1 // size), cols)):
             total, count, z = 0.0, 0, np.float32(0)
             for v in range(i * size, (i + 1) * size):
                 for u in range(j * size, (j + 1) * size):

@@ -13,6 +13,8 @@ from afkb_things.settings import ThingSettings
 from afkb_things.wholeness import wholeness
 
 HIGHEST_M = ThingSettings().above_m[1]
+LEAST_WHOLE = 0.2
+"""What is hardly ever a whole body has no shape to be fitted."""
 
 
 def body_detection(body: Body, attached: float, detector: str) -> Detection:
@@ -20,10 +22,10 @@ def body_detection(body: Body, attached: float, detector: str) -> Detection:
     sides = sides_from_above(body.points)
     base, top = body.base_m, percentile(body.points[:, 2], 98.0)
     box = box_around(on_grid(body.points, 0.005), top, 0.0, max(top - base, 0.0))
-    shape = primitive_of(body, box)
+    whole = wholeness(body, top - base, HIGHEST_M, sides[0], attached)
+    shape = primitive_of(body, box) if whole >= LEAST_WHOLE else None
     if shape is not None:
         box = box_of(shape)
-    whole = wholeness(body, top - base, HIGHEST_M, sides[0], attached)
     spread = body.sigma_m**2 + 1e-4
     return Detection(
         detector=detector,

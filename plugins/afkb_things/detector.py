@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
 from afkb_mapping.bodies import Body
@@ -44,18 +45,21 @@ class ThingDetector:
         loose = Loose.of(scene)
         hidden = list(things_on_hidden_supports(scene, loose, s.min_pixels))
         on_floor = list(things_on_the_floor(scene, loose, s.min_pixels))
+        names = np.zeros(scene.depth_m.shape, np.int32)
         return [
             body_detection(body, attached, self.name)
             for group in (standing, *([b] for b in hidden + on_floor))
-            for body, attached in self._free(group, scene)
+            for body, attached in self._free(group, scene, names)
         ]
 
-    def _free(self, bodies: Sequence[Body], scene: Scene) -> Iterator[tuple[Body, float]]:
+    def _free(
+        self, bodies: Sequence[Body], scene: Scene, names: NDArray[np.int32]
+    ) -> Iterator[tuple[Body, float]]:
         """The bodies that aren't part of something larger, and how far each one's surface goes on.
 
-        Where it goes on into a neighbour that is such a part, it goes on, too.
+        Where it goes on into a neighbour that is such a part, it goes on, too. `names` (H, W) is
+        scratch: 0 before and after.
         """
-        names = np.zeros(scene.depth_m.shape, np.int32)
         for name, body in enumerate(bodies, start=1):
             mark(body.u, body.v, names, name)
         kept = dict(enumerate(bodies, start=1))
@@ -72,6 +76,7 @@ class ThingDetector:
             if not parts:
                 break
         for k, body in kept.items():
+            mark(body.u, body.v, names, 0)
             yield body, attached[k]
 
     def _on_supports(self, scene: Scene) -> Iterator[Body]:

@@ -21,14 +21,15 @@ from afkb_things.distances import (
     residuals,
 )
 
-SAMPLES = 120
-ROUNDS = 8
+SAMPLES = 60
+ROUNDS = 6
 DEEP_M = 0.010
 """What lies deeper inside a shape, the noise added, isn't of its surface but of a hollow."""
 PER_PARAMETER = 0.03
 """A parameter more must better the fit by this share."""
-GOOD_M = 0.002
-"""Where the best simple shape is off by more than this and the noise, a superquadric is tried."""
+GOOD_M = 0.001
+"""Where the best upright box or cylinder is off by more than this and the noise, other shapes are
+tried; where the best of these is, a superquadric."""
 SQUARE, ROUND = 0.1, 1.0
 MOST_GROWTH, LEAST_GROWTH = 2.2, 0.7
 """By how much a shape may be larger, or smaller, than what is seen of the body: half of a cylinder
@@ -45,7 +46,7 @@ def primitive_of(body: Body, box: OrientedBox) -> Primitive | None:
     deep = DEEP_M + 3.0 * sigma
     best: tuple[float, float, int, NDArray[np.float64]] | None = None
     for kind in (BOX, CYLINDER, LYING, SPHERE, CONE, SUPERQUADRIC):
-        if kind == SUPERQUADRIC and best is not None and best[1] < GOOD_M + sigma:
+        if best is not None and best[1] < GOOD_M + sigma and kind in (LYING, SUPERQUADRIC):
             break
         start = _start(kind, box)
         found = fit(kind, points, box.bottom, start, 0.5 * deep, ROUNDS)
@@ -77,13 +78,23 @@ def _start(kind: int, box: OrientedBox) -> NDArray[np.float64]:
 
 def _plausible(kind: int, p: NDArray[np.float64], box: OrientedBox) -> bool:
     """Whether a shape is about as large as what is seen of it, and where that is."""
-    shape = _primitive(kind, p, box.bottom, 0.0)
-    around = box_of(shape)
-    seen, has = np.sort(box.size_xyz[:2]), np.sort(around.size_xyz[:2])
-    off = np.hypot(*(np.array(around.center_xyz[:2]) - box.center_xyz[:2]))
-    higher = abs(around.top - box.top) < 0.2 * box.size_xyz[2] + DEEP_M
-    grown = (has < MOST_GROWTH * seen + DEEP_M) & (has > LEAST_GROWTH * seen - DEEP_M)
-    return bool(grown.all() and higher and off < 0.75 * seen[1])
+    if kind in (BOX, SUPERQUADRIC):
+        sides, top = (2 * p[2], 2 * p[3]), p[5]
+    elif kind == LYING:
+        sides, top = (2 * p[2], 2 * p[3]), box.bottom + 2 * p[2]
+    elif kind == SPHERE:
+        sides, top = (2 * p[3], 2 * p[3]), p[2] + p[3]
+    else:
+        radius = p[2] if kind == CYLINDER else max(p[2], p[3])
+        sides, top = (2 * radius, 2 * radius), p[4 if kind == CONE else 3]
+    seen, has = sorted(box.size_xyz[:2]), sorted(sides)
+    grown = all(
+        LEAST_GROWTH * s - DEEP_M < h < MOST_GROWTH * s + DEEP_M
+        for s, h in zip(seen, has, strict=True)
+    )
+    higher = abs(top - box.top) < 0.2 * box.size_xyz[2] + DEEP_M
+    off = math.hypot(p[0] - box.center_xyz[0], p[1] - box.center_xyz[1])
+    return bool(grown and higher and off < 0.75 * seen[1])
 
 
 def _primitive(kind: int, p: NDArray[np.float64], base_m: float, residual_m: float) -> Primitive:

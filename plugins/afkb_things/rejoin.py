@@ -42,16 +42,18 @@ def rejoined(bodies: Sequence[Body], scene: Scene) -> list[Body]:
     names = np.zeros(scene.depth_m.shape, np.int32)
     for name, body in enumerate(bodies, start=1):
         mark(body.u, body.v, names, name)
-    behind = _behind(scene.depth_m, names, len(bodies))
-    kept = [_filled(body, scene, names) for body in bodies]
+    behind = _behind(scene.depth_m, names, len(bodies), around(bodies))
+    taken = names > 0
+    kept = [_filled(body, scene, taken) for body in bodies]
+    tops = [percentile(body.points[:, 2], 98.0) for body in bodies]
     for a in range(len(kept)):
         for b in range(a + 1, len(kept)):
             first, second = kept[a], kept[b]
-            if first is None or second is None or not _level(first, second):
+            if first is None or second is None or abs(tops[a] - tops[b]) > _level_m(first, second):
                 continue
             both = _both(first, second)
             if _touch(first, second):
-                joined = _hollow(both, scene, names)
+                joined = _hollow(both, scene, taken)
             else:
                 covered = (behind[a] >= LEAST_BEHIND) & (behind[b] >= LEAST_BEHIND)
                 joined = both if covered.any() and _is_one(both, first, second, scene) else None
@@ -70,12 +72,20 @@ def _both(a: Body, b: Body) -> Body:
     return replace(a, u=u[order], v=v[order], depth_m=depth[order], points=points[order])
 
 
-def _level(a: Body, b: Body) -> bool:
-    """Whether both stand on the same support and reach equally high."""
+def _level_m(a: Body, b: Body) -> float:
+    """How much the heights of two tops that are one may differ; below 0 on other supports."""
     if a.support_height_m != b.support_height_m:
-        return False
-    off = percentile(a.points[:, 2], 98.0) - percentile(b.points[:, 2], 98.0)
-    return abs(off) < LEVEL_M + 2.0 * max(a.sigma_m, b.sigma_m)
+        return -1.0
+    return LEVEL_M + 2.0 * max(a.sigma_m, b.sigma_m)
+
+
+def around(bodies: Sequence[Body]) -> tuple[int, int, int, int]:
+    """The image box around bodies; empty around none."""
+    boxes = np.array([body.image_box for body in bodies]).reshape(-1, 4)
+    if not len(boxes):
+        return 0, 0, 0, 0
+    (u0, v0), (u1, v1) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+    return int(u0), int(v0), int(u1), int(v1)
 
 
 def _touch(a: Body, b: Body) -> bool:
@@ -85,27 +95,27 @@ def _touch(a: Body, b: Body) -> bool:
     return bool((low - high < NEAR_M).all())
 
 
-def _hollow(body: Body, scene: Scene, names: NDArray[np.int32]) -> Body | None:
+def _hollow(body: Body, scene: Scene, taken: NDArray[np.bool_]) -> Body | None:
     """A body with its inside, or None where it has no opening that all of it is around."""
-    full = _with_inside(body, scene, names)
+    full = _with_inside(body, scene, taken)
     opening = find_opening(full, scene.camera_xyz)
     if opening is None or opening.rim_share < RIM_SHARE or opening.inside_share < INSIDE_SHARE:
         return None
     return full
 
 
-def _filled(body: Body, scene: Scene, names: NDArray[np.int32]) -> Body | None:
+def _filled(body: Body, scene: Scene, taken: NDArray[np.bool_]) -> Body | None:
     """A body with what of its inside was taken for the support, if it is a hollow."""
-    if len(_inside(body, scene, names)[0]) < SEEN_THROUGH:
+    if len(_inside(body, scene, taken)[0]) < SEEN_THROUGH:
         return body
-    return _hollow(body, scene, names) or body
+    return _hollow(body, scene, taken) or body
 
 
 def _inside(
-    body: Body, scene: Scene, names: NDArray[np.int32]
+    body: Body, scene: Scene, taken: NDArray[np.bool_]
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """Pixels of no body that are seen from above within a body's outline, away from its border."""
-    return _seen_down(scene, names > 0, body, _hull(body))
+    return _seen_down(scene, taken, body, _hull(body))
 
 
 def _seen_down(
@@ -118,8 +128,8 @@ def _seen_down(
     )
 
 
-def _with_inside(body: Body, scene: Scene, names: NDArray[np.int32]) -> Body:
-    u, v = _inside(body, scene, names)
+def _with_inside(body: Body, scene: Scene, taken: NDArray[np.bool_]) -> Body:
+    u, v = _inside(body, scene, taken)
     if not len(u):
         return body
     depths, points = scene.at(u, v)
@@ -211,13 +221,17 @@ def _through(
 
 @kernel
 def _behind(
-    depth_m: NDArray[np.float32], names: NDArray[np.int32], count: int
+    depth_m: NDArray[np.float32],
+    names: NDArray[np.int32],
+    count: int,
+    box: tuple[int, int, int, int],
 ) -> NDArray[np.int64]:
-    """In how many pixel pairs body p lies behind its neighbour q: (count, count)."""
+    """In how many pixel pairs of a box body p lies behind its neighbour q: (count, count)."""
     rows, cols = names.shape
     out = np.zeros((count, count), np.int64)
-    for v in range(rows):
-        for u in range(cols):
+    u0, v0, u1, v1 = box
+    for v in range(v0, v1):
+        for u in range(u0, u1):
             p = names[v, u]
             if p == 0:
                 continue

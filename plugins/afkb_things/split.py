@@ -14,7 +14,7 @@ from afkb_mapping.openings import find_opening
 from afkb_things.cells import cell_size, cells_of, of_pixels
 from afkb_things.parts import BEHIND, TOUCH, Parts, measures_of
 from afkb_things.patches import contacts, patches_of
-from afkb_things.rejoin import INSIDE_SHARE, RIM_SHARE
+from afkb_things.rejoin import INSIDE_SHARE, RIM_SHARE, around
 from afkb_things.scene import Scene
 from afkb_things.surroundings import mark
 from afkb_things.valleys import valleys
@@ -34,10 +34,13 @@ def split(
         mark(body.u, body.v, pools, name)
     focal = float(scene.intrinsics[0])
     size = cell_size(focal)
-    depth, of, kind = cells_of(scene.depth_m, pools, kinds, size)
+    depth, of, kind = cells_of(scene.depth_m, pools, kinds, size, around(bodies))
     valley = valleys(depth, of, focal / size)
     patches = np.zeros(depth.shape, np.int32)
     for name, body in enumerate(bodies, start=1):
+        if len(body.u) < 2 * min_pixels:
+            yield body
+            continue
         u0, v0, u1, v1 = extent(body.u, body.v)
         box = (u0 // size, v0 // size, -(-u1 // size), -(-v1 // size))
         box = (*box[:2], min(box[2], depth.shape[1]), min(box[3], depth.shape[0]))
