@@ -100,5 +100,6 @@ def _beyond(
 
 def shares(counts: NDArray[np.int64]) -> Mapping[str, float]:
     """Shares of a border by kind, which sum to 1; empty where none was counted."""
-    total = int(counts.sum())
-    return {k: float(n) / total for k, n in zip(KINDS, counts, strict=True)} if total else {}
+    listed = counts.tolist()
+    total = sum(listed)
+    return {k: n / total for k, n in zip(KINDS, listed, strict=True)} if total else {}

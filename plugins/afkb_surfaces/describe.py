@@ -14,7 +14,7 @@ from afkb_mapping.image_regions import Rectangle
 from afkb_mapping.sensor_noise import depth_sigma
 from afkb_mapping.trapezoids import membership
 from afkb_surfaces.extents import row_ends
-from afkb_surfaces.patches import MEDIAN, NEAREST, RMS, TILT
+from afkb_surfaces.patches import HEIGHT, MEDIAN, NEAREST, RMS, TILT
 from afkb_surfaces.settings import SurfaceSettings
 
 BAND_PX = (6.0, 16.0, math.inf, math.inf)
@@ -46,7 +46,7 @@ def support_probability(
 
 def support_detection(
     p: float,
-    m: NDArray[np.float64],
+    m: list[float],
     height_m: float,
     footprint_xy: NDArray[np.float64],
     border: Mapping[str, float],
@@ -76,17 +76,16 @@ def support_detection(
         covariance_xyz=covariance,
         footprint_xy=footprint_xy,
         n_pixels=int(measures["pixels"]),
-        range_m=float(m[NEAREST]),
+        range_m=m[NEAREST],
         image_box=image_box,
         cut_by_image=cut,
         extent_known=missing < LOST_BORDER or measures["band_px"] > STRIP_PX,
         measures={
-            "height": height_m,
-            "area": measures["area"],
+            "height": m[HEIGHT],
             "tilt_deg": tilt_deg,
-            "rms": float(m[RMS]),
+            "rms": m[RMS],
             "missing_border": missing,
-            "band_px": measures["band_px"],
+            **{name: value for name, value in measures.items() if name != "pixels"},
         },
         pixels=pixels,
         rings_xy=rings_xy,

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from afkb.flow import Detection, View
 from afkb_mapping.image_regions import Rectangle, order_by_label, returning_rectangle
 from afkb_surfaces.cells import Cells
+from afkb_surfaces.describe import KINECT_FOCAL_PX
 from afkb_surfaces.fragments import join_fragments
 from afkb_surfaces.grouping import (
-    FLOOR,
     SUPPORT,
     UPRIGHT,
     classify,
@@ -25,13 +25,16 @@ from afkb_surfaces.grouping import (
 from afkb_surfaces.labelled import Labelled
 from afkb_surfaces.patches import measure_patches
 from afkb_surfaces.settings import SurfaceSettings
-from afkb_surfaces.supports import LEAST_CELLS, Supports, candidates
+from afkb_surfaces.supports import LEAST_CELLS, LEAST_PIXELS, Supports, candidates
 from afkb_surfaces.upright import CELLS, measure_walls, upright_detection
 
 LEAST_WALL_CELLS = 20
 WORTH_A_LOOK = 0.9
 """What is lower than this part of the lowest bound isn't looked at closer."""
 UPRIGHT_WITHIN_RAD = math.radians(12)
+
+Parts = tuple[NDArray[np.int64], NDArray[np.int64]]
+"""Flat indexes of cells, label by label, and where each label begins (see `order_by_label`)."""
 
 
 class SurfaceDetector:
@@ -66,25 +69,30 @@ class SurfaceDetector:
         )
         labels = renamed(labels, target)
         returning = returning_rectangle(view.depth_m)
-        upward = (of_label == SUPPORT) | (of_label == FLOOR)
-        walls = self._bounds(cells, labels, of_label == UPRIGHT, returning, camera.fx)
-        return [*self._supports(view, cells, labels, upward, returning), *walls]
+        upward, upright = of_label != UPRIGHT, of_label == UPRIGHT
+        every = np.ones(highest + 1, np.bool_)
+        every[0] = upward[0] = False
+        parts = order_by_label(labels.ravel(), every)
+        walls = self._bounds(cells, parts, upright, returning, camera.fx)
+        return [*self._supports(view, cells, labels, parts, upward, returning), *walls]
 
     def _supports(
         self,
         view: View,
         cells: Cells,
         labels: NDArray[np.int32],
+        parts: Parts,
         upward: NDArray[np.bool_],
         returning: Rectangle,
     ) -> Iterator[Detection]:
         depth, camera, T, s = view.depth_m, view.camera, view.T_map_camera, self.settings
         assert depth is not None and camera is not None
         intrinsics = np.array([camera.fx, camera.fy, camera.cx, camera.cy])
-        order, starts = order_by_label(labels.ravel(), upward)
         angle, eye = cells.size_px / camera.fx, float(T[2, 3])
-        measures = measure_patches(order, starts, cells.planes, LEAST_CELLS, angle, eye)
-        wanted = candidates(measures, eye, camera.fx, s)
+        measures = measure_patches(*parts, upward, cells.planes, LEAST_CELLS, angle, eye)
+        least = LEAST_PIXELS * (camera.fx / KINECT_FOCAL_PX) ** 2
+        steepest = math.radians(s.normal_to_up_deg[3])
+        wanted = candidates(measures, eye, least, s.area_m2[0], steepest)
         image = coarse = Labelled.of_cells(cells, labels, intrinsics, returning)
         if s.borders:
             image = Labelled.of_pixels(
@@ -97,16 +105,17 @@ class SurfaceDetector:
     def _bounds(
         self,
         cells: Cells,
-        labels: NDArray[np.int32],
+        parts: Parts,
         upright: NDArray[np.bool_],
         returning: Rectangle,
         focal_px: float,
     ) -> Iterator[Detection]:
-        order, starts = order_by_label(labels.ravel(), upright)
         tall = WORTH_A_LOOK * self.settings.bound_height_m[0]
         angle = cells.size_px / focal_px
-        measures = measure_walls(order, starts, cells.planes, LEAST_WALL_CELLS, tall, angle)
+        measures = measure_walls(*parts, upright, cells.planes, LEAST_WALL_CELLS, tall, angle)
         for label in np.flatnonzero(measures[:, CELLS] > 0):
-            found = upright_detection(measures[label], cells, returning, self.settings, self.name)
+            found = upright_detection(
+                measures[label].tolist(), cells, returning, self.settings, self.name
+            )
             if found is not None:
                 yield found

@@ -34,19 +34,18 @@ def rings_of(
     parts that nothing bridges the largest is told.
     """
     mask = bridged(members, box, image.depth_m, plane, image.intrinsics, T_map_camera)
-    outlines, family = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-    outer = [k for k in range(len(outlines)) if family[0, k, 3] < 0]
-    if not outer:
+    outlines, family = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_SIMPLE)
+    if not outlines:
         return ()
-    largest = max(outer, key=lambda k: len(outlines[k]))
+    parents, areas = family[0, :, 3].tolist(), [cv2.contourArea(o) for o in outlines]
+    largest = max((k for k, p in enumerate(parents) if p < 0), key=areas.__getitem__)
     camera = (image.intrinsics, T_map_camera)
     ring = _ring(outlines[largest], box, plane, *camera)
-    if len(ring) < 3:
+    if len(ring) < 3 or areas[largest] < 1:
         return ()
-    by_pixel = ring_area(ring) / max(cv2.contourArea(outlines[largest]), 1.0)
-    holes = (k for k in range(len(outlines)) if family[0, k, 3] == largest)
-    # an outline of n pixels holds less than n² / 4π of them
-    large = (k for k in holes if 0.08 * len(outlines[k]) ** 2 * by_pixel > SMALLEST_HOLE_M2)
+    # a far hole covers more to the pixel than the whole does, a near one less: hence the half
+    least = 0.5 * SMALLEST_HOLE_M2 * areas[largest] / max(ring_area(ring), SMALLEST_HOLE_M2)
+    large = (k for k, p in enumerate(parents) if p == largest and areas[k] >= least)
     rings = (_ring(outlines[k], box, plane, *camera) for k in large)
     return (ring, *(r for r in rings if ring_area(r) >= SMALLEST_HOLE_M2))
 

@@ -31,12 +31,13 @@ N_MEASURES = 22
 def measure_patches(
     order: NDArray[np.int64],
     starts: NDArray[np.int64],
+    wanted: NDArray[np.bool_],
     planes: NDArray[np.float32],
     least_cells: int,
     cell_rad: float,
     camera_height_m: float,
 ) -> NDArray[np.float64]:
-    """Measures (n_labels, N_MEASURES); CELLS is 0 for patches of fewer than least_cells.
+    """Measures (n_labels, N_MEASURES); CELLS is 0 for those not wanted or of too few cells.
 
     Flat indexes of the cells of label k are `order[starts[k]:starts[k + 1]]`. `cell_rad`: angle
     that a cell takes up; a level one covers the more, the more grazing it is seen.
@@ -45,11 +46,13 @@ def measure_patches(
     cols = planes.shape[2]
     for k in range(len(out)):
         n = starts[k + 1] - starts[k]
-        if n < least_cells:
+        if n < least_cells or not wanted[k]:
             continue
         rc, p = np.empty((n, 2), np.int64), np.empty((n, 5))
+        r = order[starts[k]] // cols
         for i in range(n):
-            r = order[starts[k] + i] // cols
+            while order[starts[k] + i] >= (r + 1) * cols:
+                r += 1
             c = order[starts[k] + i] - r * cols
             rc[i, 0], rc[i, 1] = r, c
             p[i, 0], p[i, 1], p[i, 2] = planes[r, X, c], planes[r, Y, c], planes[r, Z, c]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection
 from afkb_mapping.image_regions import Rectangle, is_cut
+from afkb_mapping.kernels import kernel
 from afkb_surfaces.borders import REACH_PX, count_borders, shares
 from afkb_surfaces.cells import Cells
 from afkb_surfaces.describe import (
@@ -57,22 +58,28 @@ BELOW_CAMERA_M = 0.01
 """An upper surface is seen from above only; what seems to be one higher up is noise."""
 
 
+@kernel
 def candidates(
-    measures: NDArray[np.float64], eye_m: float, focal_px: float, settings: SurfaceSettings
+    measures: NDArray[np.float64],
+    eye_m: float,
+    least_pixels: float,
+    least_area_m2: float,
+    steepest_rad: float,
 ) -> NDArray[np.bool_]:
-    """Which patches (n_labels,) are worth a closer look, from their measures.
+    """Which patches (n_labels,) are worth a closer look, from their measures; never the floor.
 
     Those under the camera, at eye_m, not too steep, and large enough if they grow.
     """
-    least = LEAST_PIXELS * (focal_px / KINECT_FOCAL_PX) ** 2
-    chosen: NDArray[np.bool_] = (
-        (measures[:, CELLS] > 0)
-        & (measures[:, HEIGHT] <= eye_m - BELOW_CAMERA_M)
-        & (GROWN * measures[:, AREA] > settings.area_m2[0])
-        & (GROWN * measures[:, PIXELS] >= least)
-        & (measures[:, TILT] < math.radians(settings.normal_to_up_deg[3]))
-    )
-    chosen[FLOOR_LABEL] = False
+    chosen = np.zeros(len(measures), np.bool_)
+    for k in range(FLOOR_LABEL + 1, len(measures)):
+        m = measures[k]
+        chosen[k] = (
+            m[CELLS] > 0
+            and m[HEIGHT] <= eye_m - BELOW_CAMERA_M
+            and GROWN * m[AREA] > least_area_m2
+            and GROWN * m[PIXELS] >= least_pixels
+            and m[TILT] < steepest_rad
+        )
     return chosen
 
 
@@ -98,10 +105,10 @@ class Supports:
     def detections(self) -> Iterator[Detection]:
         """The floor first, if it is seen, then the supports in the order of the image."""
         if self.measures[FLOOR_LABEL, PIXELS] >= LEAST_FLOOR_PIXELS * self._fineness**2:
-            yield from self._floor(self.measures[FLOOR_LABEL])
+            yield from self._floor(self.measures[FLOOR_LABEL].tolist())
         borders = self._borders(self.image)
         for label in np.flatnonzero(self.wanted):
-            yield from self._support(int(label), self.measures[label], borders[label])
+            yield from self._support(int(label), self.measures[label].tolist(), borders[label])
 
     def _borders(self, image: Labelled) -> NDArray[np.int64]:
         reach = round(REACH_PX * self._fineness) if image.size_px == 1 else 1
@@ -122,7 +129,7 @@ class Supports:
         return self.focal_px / KINECT_FOCAL_PX
 
     def _support(
-        self, label: int, m: NDArray[np.float64], border: NDArray[np.int64]
+        self, label: int, m: list[float], border: NDArray[np.int64]
     ) -> Iterator[Detection]:
         image, size = self.image, self.cells.size_px
         cell_box = (int(m[C0]), int(m[R0]), int(m[C1]) + 1, int(m[R1]) + 1)
@@ -134,7 +141,7 @@ class Supports:
         if len(pixels) < LEAST_PIXELS * self._fineness**2:
             return
         tilt_deg = math.degrees(m[TILT])
-        band = float(len(pixels) / (m[LENGTH] * size) / self._fineness)
+        band = len(pixels) / (m[LENGTH] * size) / self._fineness
         if support_probability(math.inf, tilt_deg, band, self.settings) <= 0:
             return
         step, plane = self.settings.footprint_step_m, plane_of(m)
@@ -146,7 +153,7 @@ class Supports:
         yield support_detection(
             p,
             m,
-            float(m[HEIGHT]),
+            m[HEIGHT],
             footprint,
             shares(border),
             {"area": area, "band_px": band, "pixels": len(pixels)},
@@ -173,7 +180,7 @@ class Supports:
     def _footprint(
         self,
         label: int,
-        m: NDArray[np.float64],
+        m: list[float],
         plane: NDArray[np.float64],
         step: float,
         image: Labelled,
@@ -184,42 +191,38 @@ class Supports:
             image.labels, label, span, plane, image.intrinsics, self.T_map_camera, step
         )
 
-    def _floor(self, m: NDArray[np.float64]) -> Iterator[Detection]:
-        """The floor, once; its height is where it was seen, its top is z = 0."""
-        image = self.coarse
-        plane = np.array([0.0, 0.0, m[HEIGHT]])
-        footprint = self._footprint(FLOOR_LABEL, m, plane, FLOOR_STEP_M, image)
+    def _floor(self, m: list[float]) -> Iterator[Detection]:
+        """The floor, once; its height is where it was seen, its top is z = 0.
+
+        It has no outline: what is seen of it is bounded by what stands on it.
+        """
+        plane, size = np.array([0.0, 0.0, m[HEIGHT]]), self.cells.size_px
+        footprint = self._footprint(FLOOR_LABEL, m, plane, FLOOR_STEP_M, self.coarse)
         area = len(footprint) * FLOOR_STEP_M**2
-        p = support_probability(area, math.degrees(m[TILT]), math.inf, self.settings)
+        band = m[PIXELS] / (m[LENGTH] * size) / self._fineness
+        p = support_probability(area, math.degrees(m[TILT]), band, self.settings)
         if p <= 0:
             return
-        size, cell_box = (
-            self.cells.size_px,
-            (int(m[C0]), int(m[R0]), int(m[C1]) + 1, int(m[R1]) + 1),
-        )
-        members, box = members_of(image.labels, FLOOR_LABEL, cell_box)
-        c0, r0, c1, r1 = cell_box
-        image_box = (c0 * size, r0 * size, c1 * size, r1 * size)
-        found = support_detection(
+        c0, c1, r0, r1 = (int(k) for k in m[C0 : R1 + 1])
+        image_box = (c0 * size, r0 * size, (c1 + 1) * size, (r1 + 1) * size)
+        yield support_detection(
             p,
             m,
             0.0,
             footprint,
             {},
-            {"area": area, "band_px": math.inf, "pixels": float(m[PIXELS])},
+            {"area": area, "band_px": band, "pixels": m[PIXELS], "is_floor": 1.0},
             image_box,
             None,
-            rings_of(image, members, box, plane, self.T_map_camera),
+            (),
             is_cut(image_box, self.image_returning),
             self.cells.noise,
             FLOOR_STEP_M,
             self.detector,
         )
-        measures = {**found.measures, "is_floor": 1.0, "height": float(m[HEIGHT])}
-        yield replace(found, measures=measures)
 
 
-def plane_of(m: NDArray[np.float64]) -> NDArray[np.float64]:
+def plane_of(m: list[float]) -> NDArray[np.float64]:
     """Coefficients (3,) of z = p0 x + p1 y + p2: a patch's plane, its height where it is level."""
     if math.degrees(m[TILT]) < LEVEL_DEG[2]:
         return np.array([0.0, 0.0, m[HEIGHT]])

@@ -29,12 +29,13 @@ N_MEASURES = 15
 def measure_walls(
     order: NDArray[np.int64],
     starts: NDArray[np.int64],
+    wanted: NDArray[np.bool_],
     planes: NDArray[np.float32],
     least_cells: int,
     least_height_m: float,
     cell_rad: float,
 ) -> NDArray[np.float64]:
-    """Measures (n_labels, N_MEASURES); CELLS is 0 for what is smaller than either limit.
+    """Measures (n_labels, N_MEASURES); CELLS is 0 for those not wanted or too small.
 
     Flat indexes of the cells of label k are `order[starts[k]:starts[k + 1]]`.
     """
@@ -42,15 +43,17 @@ def measure_walls(
     cols = planes.shape[2]
     for k in range(len(out)):
         n = starts[k + 1] - starts[k]
-        if n < least_cells:
+        if n < least_cells or not wanted[k]:
             continue
         m = out[k]
         m[C0] = m[R0] = np.inf
         m[C1] = m[R1] = -np.inf
         thin = (n + SAMPLES - 1) // SAMPLES
         p = np.empty(((n + thin - 1) // thin, 4))
+        r = order[starts[k]] // cols
         for i in range(n):
-            r = order[starts[k] + i] // cols
+            while order[starts[k] + i] >= (r + 1) * cols:
+                r += 1
             c = order[starts[k] + i] - r * cols
             m[R0], m[R1] = min(m[R0], r), max(m[R1], r)
             m[C0], m[C1] = min(m[C0], c), max(m[C1], c)
@@ -96,7 +99,7 @@ def fitted_segment(
 
 
 def upright_detection(
-    m: NDArray[np.float64],
+    m: list[float],
     cells: Cells,
     returning: Rectangle,
     settings: SurfaceSettings,
@@ -106,18 +109,18 @@ def upright_detection(
 
     Its height is what is seen of it; where the image cuts it, that is a lower bound.
     """
-    tall = float(m[HIGH] - m[LOW])
+    tall = m[HIGH] - m[LOW]
     p = membership(tall, settings.bound_height_m)
-    x0, y0, x1, y1 = m[X0 : Y1 + 1].tolist()
+    x0, y0, x1, y1 = m[X0 : Y1 + 1]
     length = math.hypot(x1 - x0, y1 - y0)
     if p <= 0 or length * tall < settings.bound_area_m2:
         return None
-    low, high, rms = max(float(m[LOW]), 0.0), float(m[HIGH]), float(m[RMS])
+    low, high, rms = max(m[LOW], 0.0), m[HIGH], m[RMS]
     middle = ((x0 + x1) / 2, (y0 + y1) / 2, (low + high) / 2)
     size, covariance = cells.size_px, np.zeros((3, 3))
     covariance[0, 0] = covariance[1, 1] = (cells.noise * depth_sigma(m[MEDIAN])) ** 2 + 1e-4
     covariance[2, 2] = 0.01
-    c0, c1, r0, r1 = (int(v) for v in m[C0 : R1 + 1].tolist())
+    c0, c1, r0, r1 = (int(v) for v in m[C0 : R1 + 1])
     image_box = (c0 * size, r0 * size, (c1 + 1) * size, (r1 + 1) * size)
     return Detection(
         detector=detector,
@@ -127,7 +130,7 @@ def upright_detection(
         covariance_xyz=covariance,
         footprint_xy=_along(x0, y0, x1, y1, max(2, int(length / settings.footprint_step_m))),
         n_pixels=int(m[CELLS]) * size * size,
-        range_m=float(m[NEAREST]),
+        range_m=m[NEAREST],
         image_box=image_box,
         segment_xy=np.array([[x0, y0], [x1, y1]]),
         cut_by_image=is_cut(image_box, _to_cells(returning, size)),

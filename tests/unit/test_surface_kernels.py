@@ -26,7 +26,8 @@ def patch_of(points: Points) -> Points:
     n = len(points)
     planes = np.ones((1, N_ROWS, n), np.float32)
     planes[0, X : X + 3] = points.T
-    measures: Points = measure_patches(np.arange(n), np.array([0, n]), planes, 3, 0.007, 1.5)[0]
+    order, starts, wanted = np.arange(n), np.array([0, n]), np.ones(1, np.bool_)
+    measures: Points = measure_patches(order, starts, wanted, planes, 3, 0.007, 1.5)[0]
     return measures
 
 
