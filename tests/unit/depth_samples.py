@@ -76,23 +76,33 @@ def view_of(
     height: float = 1.3,
     pitch_deg: float = 30.0,
     rng: np.random.Generator | None = None,
+    camera: PinholeCamera = CAMERA,
+    roll_deg: float = 0.0,
+    noise: float = 1.0,
 ) -> View:
-    """What a camera at (0, 0, height) sees, looking along x and down; noisy with a generator."""
+    """What a camera at (0, 0, height) sees, looking along x and down; noisy with a generator.
+
+    `noise`: how many times a Kinect's. `roll_deg`: turned about its optical axis.
+    """
     c, s = math.cos(math.radians(pitch_deg)), math.sin(math.radians(pitch_deg))
     T = np.eye(4)
     T[:3, :3] = np.column_stack([[0, -1, 0], [-s, 0, -c], [c, 0, -s]])
+    roll = math.radians(roll_deg)
+    turned = [[math.cos(roll), -math.sin(roll), 0], [math.sin(roll), math.cos(roll), 0], [0, 0, 1]]
+    T[:3, :3] @= np.array(turned)
     T[2, 3] = height
-    u, v = np.meshgrid(np.arange(CAMERA.width), np.arange(CAMERA.height))
+    u, v = np.meshgrid(np.arange(camera.width), np.arange(camera.height))
     rays = np.stack(
-        [(u - CAMERA.cx) / CAMERA.fx, (v - CAMERA.cy) / CAMERA.fy, np.ones(u.shape)], axis=-1
+        [(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, np.ones(u.shape)], axis=-1
     )
     depth = np.minimum.reduce([thing.hit(T[:3, 3], rays @ T[:3, :3].T) for thing in things])
     depth = np.where(np.isfinite(depth) & (depth < 8), depth, 0.0)
     if rng is not None:
-        depth += (depth > 0) * rng.normal(size=depth.shape) * (0.0012 + 0.0019 * (depth - 0.4) ** 2)
+        sigma = noise * (0.0012 + 0.0019 * (depth - 0.4) ** 2)
+        depth += (depth > 0) * rng.normal(size=depth.shape) * sigma
         depth[rng.random(depth.shape) < 0.02] = 0.0
     depth = np.clip(np.round(depth, 3), 0, None).astype(np.float32)
-    return View(0, 0.0, np.eye(4), depth, CAMERA, T, T_map_base=np.eye(4))
+    return View(0, 0.0, np.eye(4), depth, camera, T, T_map_base=np.eye(4))
 
 
 def table(x: float, y: float, top: float, length: float = 0.8, width: float = 1.2) -> Box:
