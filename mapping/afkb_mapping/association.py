@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from afkb.flow import Detection, View
-from afkb_mapping.doorway_merger import is_passage
 from afkb_mapping.footprint import Footprint
+from afkb_mapping.structure import is_structure
 from afkb_mapping.tracks import SURFACE_CELL_M, THING_CELL_M, ObservedTrack
 
 SURFACE_OVERLAP = 0.05
@@ -40,11 +40,11 @@ class Association:
         self._merged_into: dict[str, str] = {}
 
     def match(self, view: View, detections: Sequence[Detection]) -> list[ObservedTrack | None]:
-        """The track of each detection (new where it is new); None for bounds and doorways."""
+        """The track of each detection (new where it is new); None for what is no thing."""
         found: list[ObservedTrack | None] = [None] * len(detections)
         things = []
         for i, detection in enumerate(detections):
-            if detection.segment_xy is not None or is_passage(detection) or _is_ceiling(detection):
+            if is_structure(detection):
                 continue
             if _is_surface(detection):
                 found[i] = self._see(view, detection, self._surface_track(detection))
@@ -144,10 +144,6 @@ def _is_surface(detection: Detection) -> bool:
     first = (detection.parts or (detection,))[0]
     best = max(first.affordances, key=lambda name: first.affordances[name])
     return best == "SupportAbility"
-
-
-def _is_ceiling(detection: Detection) -> bool:
-    return bool(detection.measures.get("is_ceiling", 0.0))
 
 
 def _is_floor(detection: Detection) -> bool:

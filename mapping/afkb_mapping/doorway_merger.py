@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from afkb.flow import Detection, OccupancyGrid, View
 from afkb_mapping.detour import room_to_room, way_free
 from afkb_mapping.panorama import panorama_of
+from afkb_mapping.structure import PASSAGE, is_passage
 from afkb_mapping.upright_cells import UprightCells
 
 Array = NDArray[np.float64]
 
-FEATURE = "PassAbility"
 SAME_M, SAME_RAD = 0.35, math.radians(35.0)
 """Gaps whose middles lie this near, turned by no more, are one: jambs seen at a slant are uncertain
 by the thickness of a wall."""
@@ -115,7 +115,7 @@ class DoorwayMerger:
 
     def _take_in(self, detection: Detection, eye_xy: Array) -> None:
         jambs = jambs_of(detection)
-        plan = detection.measures.get("plan", detection.affordances[FEATURE])
+        plan = detection.measures.get("plan", detection.affordances[PASSAGE])
         lintel = detection.measures.get("lintel_height")
         known = self._known(jambs)
         if known is None:
@@ -169,12 +169,6 @@ class DoorwayMerger:
 def _ramp(value: float, low: float, high: float, least: float = 0.0) -> float:
     """From `least` at or below `low` to 1 at or above `high`."""
     return least + (1 - least) * min(1.0, max(0.0, (value - low) / (high - low)))
-
-
-def is_passage(detection: Detection) -> bool:
-    """Whether a detection is of an opening, which is no thing and no surface."""
-    p = detection.affordances.get(FEATURE)
-    return p is not None and p == max(detection.affordances.values())
 
 
 def jambs_of(detection: Detection) -> Array:

@@ -15,6 +15,8 @@ from afkb_mapping.perception import Perception
 from afkb_mapping.placed_views import placed_views, skipped
 from afkb_mapping.run_record import Stages
 from afkb_mapping.selection import FrameRange, Selection
+from afkb_mapping.structure import is_structure
+from afkb_mapping.view_floor import free_floor
 
 NAMED_CATEGORIES = 5
 
@@ -65,6 +67,7 @@ def as_json(look: Look | SkippedFrame, network: Network) -> dict[str, object]:
         "x": float(T[0, 3]),
         "y": float(T[1, 3]),
         "yaw": yaw_of(T),
+        "free_floor": [outline.tolist() for outline in free_floor(look.view)],
         "detections": [described(d, network) for d in look.detections],
     }
 
@@ -102,6 +105,7 @@ def described(detection: Detection, network: Network) -> dict[str, object]:
         }
     if detection.segment_xy is not None:
         told["segment"] = detection.segment_xy.tolist()
+    if is_structure(detection):
         return told
     return told | _taken_for(detection, network)
 

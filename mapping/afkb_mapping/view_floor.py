@@ -11,6 +11,8 @@ from afkb_mapping.panorama import panorama_of
 
 Array = NDArray[np.float64]
 
+DETAIL_M = 0.02
+"""Sensors are no better than this at a few metres."""
 LEAST_DIRECTIONS = 3
 """Fewer directions side by side are a ray, and no area."""
 
@@ -55,5 +57,14 @@ def _outlines(center_xy: Array, bearings: Array, reach_m: Array) -> list[Array]:
         if len(run) >= LEAST_DIRECTIONS:
             r, angle = reach_m[run, None], bearings[run]
             ends = center_xy + r * np.column_stack([np.cos(angle), np.sin(angle)])
-            found.append(ends if len(run) == len(bearings) else np.vstack([center_xy, ends]))
+            outline = ends if len(run) == len(bearings) else np.vstack([center_xy, ends])
+            found.append(_simplified(outline))
     return found
+
+
+def _simplified(outline_xy: Array) -> Array:
+    """The same outline without the points that change it by less than `DETAIL_M`."""
+    import cv2
+
+    kept = cv2.approxPolyDP(outline_xy.astype(np.float32).reshape(-1, 1, 2), DETAIL_M, True)
+    return np.asarray(kept.reshape(-1, 2), dtype=np.float64)
