@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -93,7 +94,10 @@ def described(detection: Detection, network: Network) -> dict[str, object]:
         "image_box": detection.image_box and list(detection.image_box),
         "cut_by_image": detection.cut_by_image,
         "border": dict(detection.border),
-        "measures": {n: float(v) for n, v in sorted(detection.measures.items())},
+        # JSON knows no infinity, by which some detector may say "unlimited" or "unknown".
+        "measures": {
+            n: float(v) for n, v in sorted(detection.measures.items()) if math.isfinite(v)
+        },
     }
     if detection.primitive is not None:
         shape = detection.primitive
