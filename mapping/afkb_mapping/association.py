@@ -25,6 +25,9 @@ SOFT_HEIGHT_M, SOFT_OVERLAP = 0.06, 0.5
 soft or hollow seat, or a tray on its table."""
 THING_REACH_M = 0.06
 THING_HEIGHT_M = 0.06
+SAME_EXTENT = 2.5
+"""One view of a thing shows at most so many times the length that another shows: more is something
+that it stands on or beside."""
 FOOTPRINT_SPACING_M = 0.02
 """How far apart a detection's footprint points lie, by its contract."""
 FAR_M = 1e3
@@ -195,10 +198,20 @@ def _distances(
     gate = max(THING_REACH_M, width) + 2 * float(np.sqrt(detection.covariance_xyz[0, 0]))
     found = np.full(len(tracks), FAR_M)
     for i in np.flatnonzero(apart <= gate).tolist():
+        if not _as_long(tracks[i], detection):
+            continue
         if _overlap_in_height(tracks[i], box.bottom, box.top):
             shared = tracks[i].footprint.share_within(detection.footprint_xy, THING_CELL_M)
             found[i] = apart[i] * (1.5 - shared)
     return found
+
+
+def _as_long(track: ObservedTrack, detection: Detection) -> bool:
+    """Whether both may be the length of one thing, as far as views of a part allow."""
+    low, high = track.footprint.box()
+    known, seen = float(np.hypot(*(high - low))), float(np.hypot(*detection.box.size_xyz[:2]))
+    shorter, longer = sorted((known + THING_REACH_M, seen + THING_REACH_M))
+    return longer <= SAME_EXTENT * shorter
 
 
 def _may_touch(first: ObservedTrack, second: ObservedTrack) -> bool:

@@ -14,9 +14,9 @@ from afkb_mapping.standing import FOOT_HIDDEN_M, STANDS_WITHIN_M, support_of
 from afkb_mapping.tracks import ObservedTrack
 
 EXISTS_FROM = 0.5
-CONVINCING = 0.4
-"""A thing whose views, all in all, doubt more than this that it affords anything is none: a false
-cue that a few of them took for something."""
+CONVINCING = 0.5
+"""A thing of which most of what was seen doubts that it affords anything is none: a piece of
+furniture that looks like a thing from everywhere, or a false cue that a few views gave."""
 SUSTAINED = 0.8
 """A thing seen in one view only is kept if that view was this sure of it."""
 FAINT = 0.05
@@ -29,12 +29,14 @@ def observed_entities(tracks: Sequence[ObservedTrack], network: Network) -> list
     """Entities (V_ao) of the tracks that are sure enough, in order of discovery."""
     kept = [t for t in tracks if is_kept(t)]
     things = [t for t in kept if not t.is_surface]
-    kept = [t for t in kept if not (t.is_surface and _is_part_of_thing(t, things))]
+    held = {t.id: holder for t in kept if t.is_surface and (holder := _holder(t, things))}
+    lids = {held[t.id].id: t for t in kept if t.id in held and _is_lid(t, held[t.id])}
+    kept = [t for t in kept if t.id not in held]
     outlines = {t.id: t.footprint.outline() for t in kept}
     surfaces = [t for t in kept if t.is_surface]
     known = {t.id for t in kept}
     return [
-        _observed(t, outlines[t.id], support_of(t, surfaces), known, network)
+        _observed(t, outlines[t.id], support_of(t, surfaces), known, network, lids.get(t.id))
         for t in kept
         if t.is_floor or not t.is_surface or outlines[t.id].area_m2 >= SMALLEST_SURFACE_M2
     ]
@@ -44,19 +46,25 @@ def is_kept(track: ObservedTrack) -> bool:
     """Whether a track is sure enough to be stated in the map."""
     if track.existence < EXISTS_FROM or not track.footprint:
         return False
-    if max(track.affordances.values()) < CONVINCING:
+    if track.conviction < CONVINCING:
         return False
     return track.observations > 1 or track.existence >= SUSTAINED
 
 
-def _is_part_of_thing(surface: ObservedTrack, things: Iterable[ObservedTrack]) -> bool:
-    """Whether a small surface is a thing's own lid or inside: one thing is one node."""
+def _holder(surface: ObservedTrack, things: Iterable[ObservedTrack]) -> ObservedTrack | None:
+    """The container whose own lid or inside a surface is: one thing is one node."""
     points = surface.footprint.points()
-    return any(
-        thing.bottom.value < surface.top.value <= thing.top.value + STANDS_WITHIN_M
-        and thing.footprint.share_within(points, surface.footprint.cell_m) > 0.7
-        for thing in things
-    )
+    for thing in things:
+        if thing.affordances.get("ContainAbility", 0.0) < EXISTS_FROM:
+            continue
+        within = thing.bottom.value < surface.top.value <= thing.top.value + STANDS_WITHIN_M
+        if within and thing.footprint.share_within(points, surface.footprint.cell_m) > 0.7:
+            return thing
+    return None
+
+
+def _is_lid(surface: ObservedTrack, thing: ObservedTrack) -> bool:
+    return abs(surface.top.value - thing.top.value) <= STANDS_WITHIN_M
 
 
 def _observed(
@@ -65,11 +73,14 @@ def _observed(
     support: ObservedTrack | None,
     known: Collection[str],
     network: Network,
+    lid: ObservedTrack | None,
 ) -> Entity:
+    """The track as an entity; with a `lid` it supports what its lid does."""
     top = 0.0 if track.is_floor else track.top.value
     bottom = top - SURFACE_THICKNESS_M if track.is_surface else min(track.bottom.value, top)
     size = (*outline.size_xy, top - bottom)
-    affordances = {n: p for n, p in track.affordances.items() if p >= FAINT}
+    told = {**(lid.affordances if lid else {}), **track.affordances}
+    affordances = {n: p for n, p in sorted(told.items()) if p >= FAINT}
     supports = track.is_surface or affordances.get("SupportAbility", 0.0) >= EXISTS_FROM
     z = top if supports else (top + bottom) / 2
     belief, movability, weight = {"Floor": 1.0}, "Static", 1.0

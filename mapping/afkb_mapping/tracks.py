@@ -65,6 +65,7 @@ class ObservedTrack:
     farthest_m: float = 0.0
     observations: int = 0
     pixels: int = 0
+    strength_sum: float = 0.0
     pixels_of_known_extent: int = 0
     first_seen: float = math.inf
     last_seen: float = -math.inf
@@ -80,6 +81,11 @@ class ObservedTrack:
     def affordances(self) -> dict[str, float]:
         """Feature name to probability: mean over the views that tell of it, by their pixels."""
         return {n: total / w for n, (w, total) in sorted(self.affordance_sums.items())}
+
+    @property
+    def conviction(self) -> float:
+        """How sure its views were, all in all, that it affords anything: mean by their pixels."""
+        return self.strength_sum / self.pixels
 
     @property
     def extent_known(self) -> bool:
@@ -101,6 +107,7 @@ class ObservedTrack:
         self.top.add(float(top), variance)
         self.bottom.add(detection.measures.get("support_height", detection.box.bottom), variance)
         strength = max(detection.affordances.values())
+        self.strength_sum += strength * detection.n_pixels
         if self.viewpoints.is_new(camera_xy, detection.position_xyz[:2]):
             self._believe(min(strength, CERTAIN))
         self._hear(detection)
@@ -148,6 +155,7 @@ class ObservedTrack:
         self.farthest_m = max(self.farthest_m, other.farthest_m)
         self.observations += other.observations
         self.pixels += other.pixels
+        self.strength_sum += other.strength_sum
         self.first_seen = min(self.first_seen, other.first_seen)
         self.last_seen = max(self.last_seen, other.last_seen)
         self.last_view = max(self.last_view, other.last_view)
