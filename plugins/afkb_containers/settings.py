@@ -24,7 +24,8 @@ class ContainerSettings:
       and game controllers out; `upright_height_m`: of one that is about as high as long.
     - `closed_size_m`: `size_m` of a closed body; what is larger is furniture as often.
     - `bin_size_m`: `size_m` of what stands on the floor; `bin_depth_m`: depth of its opening.
-    - `basin_width_m`: shorter side of what is let into a support.
+    - `basin_width_m`: shorter side of what is let into a support; `basin_depth_m`: depth that is
+      enough however wide it is.
     - `tallest_m`: highest point of a thing over its support that is looked at.
     """
 
@@ -35,6 +36,7 @@ class ContainerSettings:
     bin_size_m: Limits = (0.12, 0.18, 0.65, 0.85)
     bin_depth_m: Limits = (0.05, 0.10, math.inf, math.inf)
     basin_width_m: Limits = (0.10, 0.20, math.inf, math.inf)
+    basin_depth_m: Limits = (0.08, 0.15, math.inf, math.inf)
     solid_height_m: Limits = (0.060, 0.075, 0.35, 0.50)
     upright_height_m: Limits = (0.050, 0.062, 0.35, 0.50)
     solid_thickness_m: Limits = (0.012, 0.020, math.inf, math.inf)

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import Detection, View
+from afkb.flow import Detection, OrientedBox, View
 from afkb_containers.judge import LEAST_CLAIM
+from afkb_containers.rims import CELL_M, Rim, rims_among
+from afkb_containers.ring import RIM_CELLS, ring_around
 from afkb_containers.settings import ContainerSettings
+from afkb_containers.solid import ramp
 from afkb_mapping.bodies import supports_among
 from afkb_mapping.depth_points import intrinsics_of
 from afkb_mapping.from_above import box_around, hull_candidates
@@ -21,17 +25,20 @@ from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
 from afkb_mapping.trapezoids import membership
 
-CELL_M = 0.02
 LEAST_DEPTH_M = 0.05
 EDGE_M = 0.012
 """What is this much lower than the rim belongs to the hole; its deepest part says how deep."""
 LEAST_AREA_M2 = 0.03
 LEAST_SUPPORT_M2 = 0.02
 ABOVE_FLOOR_M = 0.05
-RING_CELLS = 4
-ON_TOP = 2
-RING = (0.60, 0.85)
-"""Share of the way around a hole on which there must be rim: none below, fully sure above."""
+UNDERCUT_CELLS = 2
+"""How far the wall of a basin reaches under its rim; further in, it is the room below a top."""
+MOST_SURE = 0.9
+LITRES_PER_M3 = 1000.0
+RING = (0.55, 0.75)
+"""Share of what is seen around a hole that must be rim: none below, fully sure above."""
+SHOWN = (0.35, 0.60)
+"""Share of the way around it that must be seen: of a tub that the image edge cuts, half is."""
 
 
 @kernel
@@ -40,16 +47,17 @@ def _holes(
     intrinsics: NDArray[np.float64],
     T_map_camera: NDArray[np.float64],
     height_m: float,
-    hull: NDArray[np.uint8],
+    gap: NDArray[np.uint8],
+    reach: NDArray[np.uint8],
     origin_xy: NDArray[np.float64],
     image_box: tuple[int, int, int, int],
-) -> NDArray[np.float32]:
-    """Deepest point seen through each square of a plane's hull (X, Y), m; 0 where none is.
+) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """Deepest point seen through each square of a gap in a plane (X, Y), m; pixels that show it.
 
-    `hull` is 1 inside the hull and ON_TOP where the plane itself is seen.
-    Whatever is seen through the hull lies in the image box of its support.
+    `gap` is 1 where, within its hull, the plane isn't seen; what is seen through it must lie below
+    `reach`. It all lies in the image box of the plane.
     """
-    deepest = np.zeros(hull.shape, np.float32)
+    deepest, counts = np.zeros(gap.shape, np.float32), np.zeros(gap.shape, np.int32)
     camera_xyz, drop = T_map_camera[:3, 3], T_map_camera[2, 3] - height_m
     p = np.empty(3)
     u0, v0, u1, v1 = image_box
@@ -70,98 +78,124 @@ def _holes(
             j = int((camera_xyz[1] + t * dy - origin_xy[1]) / CELL_M)
             a = int((p[0] - origin_xy[0]) / CELL_M)
             b = int((p[1] - origin_xy[1]) / CELL_M)
-            rows, cols = hull.shape
+            rows, cols = gap.shape
             if not (0 <= i < rows and 0 <= j < cols and 0 <= a < rows and 0 <= b < cols):
                 continue
-            if hull[i, j] == 1 and hull[a, b] > 0:
+            if gap[i, j] and reach[a, b]:
                 deepest[i, j] = max(deepest[i, j], under)
-    return deepest
+                counts[i, j] += 1
+    return deepest, counts
 
 
 def sunk_containers(
     view: View, earlier: Sequence[Detection], settings: ContainerSettings, detector: str
 ) -> Iterator[Detection]:
     """Hollows in the supports of a view that are deep, wide, and ringed by their support."""
-    for support in supports_among(earlier):
-        height = float(support.position_xyz[2])
-        if view.T_map_camera[2, 3] - height < 0.05 or height < ABOVE_FLOOR_M + LEAST_DEPTH_M:
+    for rim in rims_among(supports_among(earlier)):
+        if view.T_map_camera[2, 3] - rim.height_m < LEAST_DEPTH_M:
             continue
-        if len(support.footprint_xy) * CELL_M**2 < LEAST_SUPPORT_M2:
-            continue
-        yield from _in_support(view, support, height, settings, detector)
+        if rim.height_m > ABOVE_FLOOR_M + LEAST_DEPTH_M and rim.area_m2 >= LEAST_SUPPORT_M2:
+            yield from _in_rim(view, rim, settings, detector)
 
 
-def _in_support(
-    view: View,
-    support: Detection,
-    height_m: float,
-    settings: ContainerSettings,
-    detector: str,
+def _in_rim(
+    view: View, rim: Rim, settings: ContainerSettings, detector: str
 ) -> Iterator[Detection]:
-    origin = support.footprint_xy.min(axis=0) - CELL_M * (RING_CELLS + 2.5)
-    ij = np.floor((support.footprint_xy - origin) / CELL_M).astype(np.int32)
-    top = np.zeros(tuple((ij.max(axis=0) + RING_CELLS + 3).tolist()), np.uint8)
-    top[ij[:, 0], ij[:, 1]] = 1
-    hull = np.zeros_like(top)
-    cv2.fillConvexPoly(hull, cv2.convexHull(hull_candidates(ij[:, ::-1]).astype(np.int32)), 1)
-    hull[(top > 0) & (hull > 0)] = ON_TOP
+    top, hull, origin = _seen_from_above(rim)
     assert view.depth_m is not None
-    rows, cols = view.depth_m.shape
-    box = support.image_box or (0, 0, cols, rows)
     camera = (intrinsics_of(view), view.T_map_camera)
-    deepest = _holes(view.depth_m, *camera, height_m, hull, origin, box)
+    deepest, counts = _holes(
+        view.depth_m, *camera, rim.height_m, *hull, origin, rim.image_box or _all_of(view)
+    )
     open_ = cv2.morphologyEx((deepest > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3)))
     parts, measures = components(open_, False)
     for k in range(1, len(measures)):
         if measures[k, AREA] * CELL_M**2 < LEAST_AREA_M2:
             continue
-        hole = parts == k
-        if percentile(deepest[hole], 95.0) < LEAST_DEPTH_M:
+        cells = parts == k
+        depth = percentile(deepest[cells & (deepest > 0)], 95.0)
+        if depth < LEAST_DEPTH_M:
             continue
-        ring = _ring_share(hole, top)
-        sure = min(1.0, (ring - RING[0]) / (RING[1] - RING[0]))
-        if sure > 0:
-            found = _detection(
-                hole, deepest, origin, height_m, sure, ring, support, settings, detector
-            )
-            if found.affords("ContainAbility", LEAST_CLAIM):
-                yield found
+        ring, shown = ring_around(cells, top, CELL_M, origin, rim.height_m, view)
+        footprint = (np.argwhere(cells) + 0.5) * CELL_M + origin
+        hole = _Hole(footprint, rim, depth, ring, shown, int(counts[cells].sum()))
+        score = _score(hole, settings)
+        if score >= LEAST_CLAIM:
+            yield _detection(hole, score, detector)
 
 
-def _ring_share(hole: NDArray[np.bool_], top: NDArray[np.uint8]) -> float:
-    """Share of a hole's outline next to which, going outwards, its support is seen."""
-    outline = cv2.dilate(hole.astype(np.uint8), np.ones((3, 3))) - hole.astype(np.uint8)
-    near = cv2.dilate(top, np.ones((2 * RING_CELLS + 1,) * 2, np.uint8))
-    return float((outline & near).sum() / max(int(outline.sum()), 1))
+def _all_of(view: View) -> tuple[int, int, int, int]:
+    assert view.depth_m is not None
+    rows, cols = view.depth_m.shape
+    return 0, 0, cols, rows
 
 
-def _detection(
-    hole: NDArray[np.bool_],
-    deepest: NDArray[np.float32],
-    origin: NDArray[np.float64],
-    rim_m: float,
-    sure: float,
-    ring: float,
-    support: Detection,
-    settings: ContainerSettings,
-    detector: str,
-) -> Detection:
-    footprint = (np.argwhere(hole) + 0.5) * CELL_M + origin
-    depth = percentile(deepest[hole & (deepest > 0)], 95.0)
-    box = box_around(footprint, rim_m, CELL_M, depth)
-    length, width = box.size_xyz[:2]
-    sure *= membership(width, settings.basin_width_m)
-    sure *= membership(depth / math.sqrt(length * width), settings.depth_over_opening)
+def _seen_from_above(
+    rim: Rim,
+) -> tuple[NDArray[np.uint8], tuple[NDArray[np.uint8], NDArray[np.uint8]], NDArray[np.float64]]:
+    """Squares (X, Y) where a rim is seen; the gap and reach of `_holes`; and their corner (m)."""
+    origin = rim.footprint_xy.min(axis=0) - CELL_M * (RIM_CELLS + 2.5)
+    ij = np.floor((rim.footprint_xy - origin) / CELL_M).astype(np.int32)
+    top = np.zeros(tuple((ij.max(axis=0) + RIM_CELLS + 3).tolist()), np.uint8)
+    top[ij[:, 0], ij[:, 1]] = 1
+    hull = np.zeros_like(top)
+    cv2.fillConvexPoly(hull, cv2.convexHull(hull_candidates(ij[:, ::-1]).astype(np.int32)), 1)
+    gap = hull & (1 - top)
+    return top, (gap, cv2.dilate(gap, np.ones((2 * UNDERCUT_CELLS + 1,) * 2, np.uint8))), origin
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Hole:
+    """A hole in a rim: its squares (N, 2), how deep it is (m), and what `ring_around` says."""
+
+    footprint_xy: NDArray[np.float64]
+    rim: Rim
+    depth_m: float
+    ring: float
+    shown: float
+    n_pixels: int
+
+    @property
+    def area_m2(self) -> float:
+        """How much of it is seen, from above."""
+        return len(self.footprint_xy) * CELL_M**2
+
+    @property
+    def box(self) -> OrientedBox:
+        """From its bottom to its rim."""
+        return box_around(self.footprint_xy, self.rim.height_m, CELL_M, self.depth_m)
+
+
+def _score(hole: _Hole, settings: ContainerSettings) -> float:
+    """How surely a hole is a basin: ringed, wide, and deep in itself or for its width."""
+    length, width = hole.box.size_xyz[:2]
+    deep = max(
+        membership(hole.depth_m / math.sqrt(length * width), settings.depth_over_opening),
+        membership(hole.depth_m, settings.basin_depth_m),
+    )
+    ringed = ramp(hole.ring, RING) * ramp(hole.shown, SHOWN)
+    return MOST_SURE * ringed * deep * membership(width, settings.basin_width_m)
+
+
+def _detection(hole: _Hole, score: float, detector: str) -> Detection:
     return Detection(
         detector=detector,
-        affordances={"ContainAbility": 0.9 * sure},
-        box=box,
-        position_xyz=np.array(box.center_xyz),
+        affordances={"ContainAbility": score},
+        box=hole.box,
+        position_xyz=np.array(hole.box.center_xyz),
         covariance_xyz=np.diag([4e-4, 4e-4, 4e-4]),
-        footprint_xy=footprint,
-        n_pixels=int(hole.sum()),
-        range_m=support.range_m,
-        image_box=support.image_box,
-        cut_by_image=support.cut_by_image,
-        measures={"rim_height": rim_m, "height": depth, "depth": depth, "rim_share": ring},
+        footprint_xy=hole.footprint_xy,
+        n_pixels=hole.n_pixels,
+        range_m=hole.rim.range_m,
+        image_box=hole.rim.image_box,
+        cut_by_image=hole.rim.cut_by_image,
+        measures={
+            "rim_height": hole.rim.height_m,
+            "height": hole.depth_m,
+            "depth": hole.depth_m,
+            "rim_share": hole.ring,
+            "rim_shown": hole.shown,
+            "opening_width": math.sqrt(hole.area_m2),
+            "volume": LITRES_PER_M3 * hole.area_m2 * hole.depth_m,
+        },
     )
