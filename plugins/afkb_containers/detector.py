@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from afkb.flow import Detection, View
 from afkb_containers.judge import LEAST_CLAIM, container_detection, judge, look_at
+from afkb_containers.noise import noise_scale
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import ramp
 from afkb_containers.sunk import sunk_containers
@@ -15,6 +16,8 @@ from afkb_mapping.trapezoids import membership
 ATTACHED = (0.08, 0.22)
 """Share of a thing's outline beyond which its surface goes on: below the first it stands free,
 above the second it is part of something larger."""
+ATTACHED_CLOSED = (0.04, 0.12)
+"""The same for what shows no opening: the arm of a chair is as round and compact as a loaf."""
 
 
 class ContainerDetector:
@@ -34,23 +37,26 @@ class ContainerDetector:
         """Containers in the map frame; none where the view has no depth."""
         if view.depth_m is None or view.camera is None:
             return []
+        scale = noise_scale(view.depth_m)
         judged = (
-            self._detection(k, body, earlier[k], view) for k, body in bodies_among(earlier, view)
+            self._detection(k, body, earlier[k], view, scale)
+            for k, body in bodies_among(earlier, view)
         )
         found = [d for d in judged if d is not None]
         return found + list(sunk_containers(view, earlier, self.settings, self.name))
 
-    def _detection(self, index: int, body: Body, thing: Detection, view: View) -> Detection | None:
+    def _detection(
+        self, index: int, body: Body, thing: Detection, view: View, noise_scale: float
+    ) -> Detection | None:
         s = self.settings
-        length = thing.measures["length"]
-        size = membership(length, s.sides_m(body.stand))
-        size *= 1 - ramp(thing.measures["attached"], ATTACHED)
+        length, attached = thing.measures["length"], thing.measures["attached"]
+        size = membership(length, s.sides_m(body.stand)) * (1 - ramp(attached, ATTACHED))
         if size <= 0:
             return None
-        looks = look_at(body, length, view, s)
+        looks = look_at(body, length, view, noise_scale, s)
         if body.stand is not Stand.ON_FLOOR and looks.height_m > s.tallest_m - 0.02:
             return None
-        verdict = judge(body, size, looks, s)
+        verdict = judge(body, size, 1 - ramp(attached, ATTACHED_CLOSED), looks, s)
         if verdict.contains < LEAST_CLAIM:
             return None
         return container_detection(body, index, verdict, looks, self.name)

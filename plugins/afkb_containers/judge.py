@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
-from afkb_containers.noise import noise_of
+from afkb_containers.noise import Noise, noise_of
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.silhouette import Silhouette, silhouette_of
 from afkb_containers.solid import compact, convex, ramp, whole
@@ -27,8 +27,10 @@ CUT = 0.5
 SOLID = {Stand.ON_SUPPORT: 0.85, Stand.HIDDEN: 0.72, Stand.ON_FLOOR: 0.0}
 """How often a compact, upright body holds something. On the floor such bodies are stools and
 cabinets as often as boxes, so that only an opening counts there."""
+ROUGH = (1.5, 2.2)
+"""Roughness of a body, see `Noise`: above the second it is a rack or a plant."""
 CLOSED_UNSEEN = 0.8
-"""How often such a body is closed if nothing is seen of its top, else what `LID` says."""
+"""How often a container is closed if nothing is seen of its top."""
 LID = (0.4, 0.8)
 """Share of sight lines that end on its top: all of an open thing go in, all of a closed one end."""
 RIM_SHARE = (0.5, 0.8)
@@ -42,7 +44,7 @@ class Looks:
     """All that is measured of a body; no outline where nothing else speaks for a container."""
 
     height_m: float
-    noise_m: float
+    noise: Noise
     spread: Spread
     top: Top | None
     compact: float
@@ -54,19 +56,22 @@ class Looks:
         return self.top.opening if self.top else None
 
 
-def look_at(body: Body, length_m: float, view: View, settings: ContainerSettings) -> Looks:
-    """Measure a body of a length, seen from above."""
+def look_at(
+    body: Body, length_m: float, view: View, noise_scale: float, settings: ContainerSettings
+) -> Looks:
+    """Measure a body of a length, seen from above, in a view of such noise."""
     assert view.depth_m is not None and view.camera is not None
     camera_xyz = view.T_map_camera[:3, 3]
     height = max(percentile(body.points[:, 2], 98.0) - body.base_m, 1e-3)
-    noise = noise_of(body, view.depth_m)
+    noise = noise_of(body, view.depth_m, noise_scale)
     edge = max(1, round(EDGE_SHARE * view.camera.fx))
-    spread = spread_of(body, camera_xyz, noise, edge)
-    top = look_at_top(body, camera_xyz, sigma_m=noise)
+    spread = spread_of(body, camera_xyz, noise.sigma_m, edge)
+    top = look_at_top(body, camera_xyz, sigma_m=noise.sigma_m)
     fits = SOLID[body.stand] * compact(height, length_m, spread, settings)
+    fits *= 1 - ramp(noise.roughness, ROUGH)
     outline = None
     if fits > 0 or (top is not None and top.opening is not None):
-        outline = silhouette_of(body, view.depth_m, view.camera.fx, noise)
+        outline = silhouette_of(body, view.depth_m, view.camera.fx, noise.sigma_m)
     return Looks(height, noise, spread, top, fits, outline)
 
 
@@ -79,15 +84,23 @@ class Verdict:
     contains: float
 
 
-def judge(body: Body, size: float, looks: Looks, settings: ContainerSettings) -> Verdict:
-    """Weigh an opening against a closed body; `size` is how well the thing's size fits, 0 to 1."""
+def judge(
+    body: Body, size: float, free: float, looks: Looks, settings: ContainerSettings
+) -> Verdict:
+    """Weigh an opening against a closed body.
+
+    `size`: how well the thing's size fits; `free`: how freely it stands, for a closed one; 0 to 1.
+    """
     if looks.outline is None:
         return Verdict(0.0, 0.0, 0.0)
     whole_p = whole(looks.outline, looks.height_m)
     open_p = 0.95 * size * whole_p * _open(body.stand, looks.opening, settings)
     solid_p = (1 - open_p) * looks.compact * size * convex(looks.outline, looks.height_m)
-    solid_p *= CUT if body.cut_by_image else 1.0
-    return Verdict(open_p, solid_p * _closed_share(looks.top), open_p + solid_p)
+    solid_p *= free * (CUT if body.cut_by_image else 1.0)
+    if looks.top is None or not looks.top.tells:
+        return Verdict(open_p, solid_p * CLOSED_UNSEEN, open_p + solid_p)
+    closed_p = solid_p * ramp(looks.top.lid_share, LID)
+    return Verdict(open_p, closed_p, open_p + closed_p)
 
 
 def _open(stand: Stand, opening: Opening | None, settings: ContainerSettings) -> float:
@@ -102,13 +115,6 @@ def _open(stand: Stand, opening: Opening | None, settings: ContainerSettings) ->
     around = ramp(opening.rim_share, RIM_SHARE)
     seen = min(1.0, opening.inside_share / INSIDE_SHARE)
     return deep * (0.3 + 0.7 * around) * (0.3 + 0.7 * seen)
-
-
-def _closed_share(top: Top | None) -> float:
-    """How often a container with such a top is closed."""
-    if top is None or not top.tells:
-        return CLOSED_UNSEEN
-    return ramp(top.lid_share, LID)
 
 
 def container_detection(
@@ -126,7 +132,7 @@ def container_detection(
         affordances=affordances,
         box=box,
         position_xyz=np.array(box.center_xyz),
-        covariance_xyz=_covariance(looks.noise_m),
+        covariance_xyz=_covariance(looks.noise.sigma_m),
         footprint_xy=on_grid(body.points, 0.02),
         n_pixels=len(body.u),
         range_m=percentile(body.depth_m, 1.0),
@@ -149,7 +155,8 @@ def _measures(body: Body, rim_m: float, looks: Looks) -> dict[str, float]:
         "height": rim_m - body.base_m,
         "thickness": looks.spread.thickness_m,
         "solidity": looks.outline.solidity if looks.outline else 0.0,
-        "noise": looks.noise_m,
+        "noise": looks.noise.sigma_m,
+        "roughness": looks.noise.roughness,
     }
     if body.support_height_m is not None:
         measures["support_height"] = body.support_height_m

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from afkb_containers.noise import noise_of
+from afkb_containers.noise import noise_of, noise_scale
 from afkb_containers.silhouette import silhouette_of
 from afkb_containers.spread import Spread, spread_of
 from afkb_mapping.bodies import Body, Stand
@@ -81,9 +81,12 @@ def test_a_plate_is_thin_and_leans_whatever_the_noise() -> None:
 def test_noise_is_the_models_unless_more_is_seen() -> None:
     rng = np.random.default_rng(4)
     for sigma_m in (0.0005, 0.03):
-        x = 1.5 + rng.normal(0, sigma_m, (40, 40))
-        seen = noise_of(body_of(x, np.zeros((40, 40, 3))), x.astype(np.float32))
-        assert seen == pytest.approx(max(sigma_m, 0.0035), rel=0.15)
+        x = 1.5 + rng.normal(0, sigma_m, (240, 320))
+        scale = noise_scale(x.astype(np.float32))
+        assert scale == pytest.approx(max(sigma_m / 0.0035, 1.0), rel=0.1)
+        seen = noise_of(body_of(x[:40, :40], np.zeros((40, 40, 3))), x.astype(np.float32), scale)
+        assert seen.sigma_m == pytest.approx(max(sigma_m, 0.0035), rel=0.1)
+        assert seen.roughness < 1.2
 
 
 def test_a_point_is_within_a_polygon_as_opencv_has_it() -> None:
