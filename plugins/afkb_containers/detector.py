@@ -17,7 +17,8 @@ ATTACHED = (0.08, 0.22)
 """Share of a thing's outline beyond which its surface goes on: below the first it stands free,
 above the second it is part of something larger."""
 ATTACHED_CLOSED = (0.04, 0.12)
-"""The same for what shows no opening: the arm of a chair is as round and compact as a loaf."""
+"""The same for what shows no opening and whose foot is in sight: the arm of a chair is as round
+and compact as a loaf, and goes on below the seat."""
 
 
 class ContainerDetector:
@@ -56,7 +57,8 @@ class ContainerDetector:
         looks = look_at(body, length, view, noise_scale, s)
         if body.stand is not Stand.ON_FLOOR and looks.height_m > s.tallest_m - 0.02:
             return None
-        verdict = judge(body, size, 1 - ramp(attached, ATTACHED_CLOSED), looks, s)
+        part = ramp(attached, ATTACHED_CLOSED) if body.stand is Stand.ON_SUPPORT else 0.0
+        verdict = judge(body, size, 1 - part, looks, s)
         if verdict.contains < LEAST_CLAIM:
             return None
         return container_detection(body, index, verdict, looks, self.name)
