@@ -10,7 +10,7 @@ import numpy as np
 
 from afkb.flow import Detection, View
 from afkb_mapping.depth_points import points_of_pixels
-from afkb_mapping.image_regions import Region
+from afkb_mapping.image_regions import Rectangle, Region, returning_rectangle
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
 
@@ -59,12 +59,15 @@ class Body(Region):
 
 def bodies_among(earlier: Sequence[Detection], view: View) -> Iterator[tuple[int, Body]]:
     """The bodies that an earlier detector cut out of this view, each with its index."""
+    if view.depth_m is None:
+        return
+    returning = returning_rectangle(view.depth_m)
     for index, detection in enumerate(earlier):
         if detection.pixels is not None and "stand" in detection.measures:
-            yield index, _body_of(detection, view)
+            yield index, _body_of(detection, view, returning)
 
 
-def _body_of(detection: Detection, view: View) -> Body:
+def _body_of(detection: Detection, view: View, returning: Rectangle) -> Body:
     assert detection.pixels is not None and view.depth_m is not None
     v, u = np.divmod(detection.pixels, np.int32(view.depth_m.shape[1]))
     depths, points = points_of_pixels(u, v, view)
@@ -72,7 +75,9 @@ def _body_of(detection: Detection, view: View) -> Body:
     slope = (m.get("slope_x", 0.0), m.get("slope_y", 0.0), m.get("slope_offset", 0.0))
     points[:, 2] -= slope[0] * points[:, 0] + slope[1] * points[:, 1] + slope[2]
     height = m.get("support_height")
-    return Body(u, v, depths, points, view.depth_m.shape, Stand(int(m["stand"])), height, slope)
+    stand = Stand(int(m["stand"]))
+    shape = view.depth_m.shape
+    return Body(u, v, depths, points, shape, stand, height, slope, returning=returning)
 
 
 def supports_among(earlier: Sequence[Detection]) -> list[Detection]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import Detection, View
+from afkb.flow import Detection, OrientedBox, View
 from afkb_containers.noise import Noise, noise_of
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.silhouette import Silhouette, silhouette_of
@@ -20,6 +21,7 @@ from afkb_mapping.order_statistics import percentile
 from afkb_mapping.trapezoids import membership
 
 LEAST_CLAIM = 0.1
+LITRES_PER_M3 = 1000.0
 EDGE_SHARE = 1 / 525
 """Width of the mixed edge of a body, as a share of the focal length: a pixel of a Kinect's."""
 CUT = 0.5
@@ -33,6 +35,8 @@ CLOSED_UNSEEN = 0.8
 """How often a container is closed if nothing is seen of its top."""
 LID = (0.4, 0.8)
 """Share of sight lines that end on its top: all of an open thing go in, all of a closed one end."""
+SHALLOW = (0.15, 0.35)
+"""Share of what sight lines could show of a hollow, up to which it is the dent of a lid."""
 RIM_SHARE = (0.5, 0.8)
 INSIDE_SHARE = 0.15
 SIGHT_SHARE = 0.6
@@ -68,6 +72,7 @@ def look_at(
     spread = spread_of(body, camera_xyz, noise.sigma_m, edge)
     top = look_at_top(body, camera_xyz, sigma_m=noise.sigma_m)
     fits = SOLID[body.stand] * compact(height, length_m, spread, settings)
+    fits *= membership(length_m, settings.closed_sides_m(body.stand))
     fits *= 1 - ramp(noise.roughness, ROUGH)
     outline = None
     if fits > 0 or (top is not None and top.opening is not None):
@@ -99,8 +104,14 @@ def judge(
     solid_p *= free * (CUT if body.cut_by_image else 1.0)
     if looks.top is None or not looks.top.tells:
         return Verdict(open_p, solid_p * CLOSED_UNSEEN, open_p + solid_p)
-    closed_p = solid_p * ramp(looks.top.lid_share, LID)
+    closed_p = solid_p * _lidded(looks.top)
     return Verdict(open_p, closed_p, open_p + closed_p)
+
+
+def _lidded(top: Top) -> float:
+    """How much a top in sight is a lid: sight lines end on it, or a little below its rim."""
+    lid = ramp(top.lid_share, LID)
+    return lid if top.opening is None else max(lid, 1 - ramp(top.opening.sight_share, SHALLOW))
 
 
 def _open(stand: Stand, opening: Opening | None, settings: ContainerSettings) -> float:
@@ -138,7 +149,7 @@ def container_detection(
         range_m=percentile(body.depth_m, 1.0),
         image_box=body.image_box,
         cut_by_image=body.cut_by_image,
-        measures=_measures(body, rim, looks),
+        measures=_measures(body, rim, looks) | {"volume": _litres(looks.opening, box)},
         about=about,
     )
 
@@ -146,6 +157,13 @@ def container_detection(
 def _covariance(noise_m: float) -> NDArray[np.float64]:
     spread = noise_m**2 + 1e-4
     return np.diag([spread, spread, 0.25 * spread])
+
+
+def _litres(opening: Opening | None, box: OrientedBox) -> float:
+    """What it holds at least, as deep as it is seen; of a closed one, the box around it."""
+    if opening is not None:
+        return LITRES_PER_M3 * opening.width_m**2 * opening.depth_m
+    return LITRES_PER_M3 * math.prod(box.size_xyz)
 
 
 def _measures(body: Body, rim_m: float, looks: Looks) -> dict[str, float]:

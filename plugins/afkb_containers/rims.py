@@ -47,6 +47,9 @@ def rims_among(supports: Sequence[Detection]) -> list[Rim]:
 
 
 def _one_rim(a: Detection, b: Detection) -> bool:
+    """Whether they may meet beyond the image's edge, as the sides of a tub do."""
+    if not (a.cut_by_image and b.cut_by_image):
+        return False
     if abs(float(a.position_xyz[2] - b.position_xyz[2])) > SAME_HEIGHT_M:
         return False
     low = np.maximum(a.footprint_xy.min(axis=0), b.footprint_xy.min(axis=0))

@@ -22,7 +22,8 @@ class ContainerSettings:
       `max_extent_m`, of a closed body: both as the ontology states them.
     - `solid_height_m`, `solid_thickness_m`: of a closed body, which keep books, frames, screens
       and game controllers out; `upright_height_m`: of one that is about as high as long.
-    - `closed_size_m`: `size_m` of a closed body; what is larger is furniture as often.
+    - `closed_size_m`: longer side of a closed body, and `hidden_size_m` of one whose support isn't
+      seen; what is larger is furniture as often.
     - `bin_size_m`: `size_m` of what stands on the floor; `bin_depth_m`: depth of its opening.
     - `basin_width_m`: shorter side of what is let into a support; `basin_depth_m`: depth that is
       enough however wide it is.
@@ -32,7 +33,8 @@ class ContainerSettings:
     size_m: Limits = (0.035, 0.05, 0.35, 0.60)
     depth_over_opening: Limits = (0.10, 0.25, 10.0, 20.0)
     max_extent_m: Limits = (0.02, 0.05, 0.6, 1.0)
-    closed_size_m: Limits = (-math.inf, 0.0, 0.22, 0.38)
+    closed_size_m: Limits = (-math.inf, 0.0, 0.30, 0.45)
+    hidden_size_m: Limits = (-math.inf, 0.0, 0.20, 0.35)
     bin_size_m: Limits = (0.12, 0.18, 0.65, 0.85)
     bin_depth_m: Limits = (0.05, 0.10, math.inf, math.inf)
     basin_width_m: Limits = (0.10, 0.20, math.inf, math.inf)
@@ -45,6 +47,10 @@ class ContainerSettings:
     def sides_m(self, stand: Stand) -> Limits:
         """Limits of the longer side of a thing, by what it stands on."""
         return self.bin_size_m if stand is Stand.ON_FLOOR else self.size_m
+
+    def closed_sides_m(self, stand: Stand) -> Limits:
+        """The same of a closed body."""
+        return self.hidden_size_m if stand is Stand.HIDDEN else self.closed_size_m
 
     @classmethod
     def from_knowledge(cls, knowledge_base: AfNet) -> ContainerSettings:

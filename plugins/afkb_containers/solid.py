@@ -33,8 +33,7 @@ def compact(height_m: float, length_m: float, spread: Spread, settings: Containe
     return (
         _tall(height_m, length_m, settings)
         * membership(max(height_m, length_m), settings.max_extent_m)
-        * membership(length_m, settings.closed_size_m)
-        * _thick(spread, settings)
+        * _thick(spread, height_m, settings)
         * (1 - ramp(height_m / max(spread.width_m, 1e-3), SLENDER))
         * (1 - ramp(spread.lean_deg, LEAN_DEG) * (1 - ramp(spread.shape, DEEP)))
     )
@@ -69,9 +68,13 @@ def _tall(height_m: float, length_m: float, settings: ContainerSettings) -> floa
     )
 
 
-def _thick(spread: Spread, settings: ContainerSettings) -> float:
-    """Mean over what the thickness may be: half where noise hides whether it is a plate."""
+def _thick(spread: Spread, height_m: float, settings: ContainerSettings) -> float:
+    """Mean over what the thickness may be: half where noise hides whether it is a plate.
+
+    Of what is looked down on, one sees a lid; it is as thick as it is high over its support.
+    """
     may_be = (spread.least_m, spread.thickness_m, spread.most_m)
     width = max(spread.width_m, 1e-3)
     degrees = (membership(t, settings.solid_thickness_m) * ramp(t / width, PLATE) for t in may_be)
-    return sum(degrees) / len(may_be)
+    thick = sum(degrees) / len(may_be)
+    return max(thick, membership(height_m, settings.solid_height_m)) if spread.lies else thick

@@ -30,7 +30,7 @@ class Spread:
     - `thickness_m`: the smallest; `least_m` and `most_m`: what it may be as well, as the noise is
       not known better. A plate that is seen from far may be as thick as noise is.
     - `width_m`: the next larger one. `lean_deg`: of the plane across the smallest, from upright;
-      0 where that plane lies rather than stands.
+      where it `lies` rather than stands, 0.
     """
 
     thickness_m: float
@@ -38,6 +38,7 @@ class Spread:
     most_m: float
     width_m: float
     lean_deg: float
+    lies: bool
 
     @property
     def shape(self) -> float:
@@ -45,7 +46,7 @@ class Spread:
         return self.thickness_m / max(self.width_m, 1e-3)
 
 
-UNKNOWN = Spread(0.0, 0.0, 0.0, 0.0, 0.0)
+UNKNOWN = Spread(0.0, 0.0, 0.0, 0.0, 0.0, False)
 
 
 def spread_of(body: Body, camera_xyz: NDArray[np.float64], sigma_m: float, edge_px: int) -> Spread:
@@ -70,7 +71,8 @@ def spread_of(body: Body, camera_xyz: NDArray[np.float64], sigma_m: float, edge_
     )
     lean = math.degrees(math.asin(min(abs(float(normal[2])), 1.0)))
     width = _extent_along(points, across) / KEPT
-    return Spread(mean, least, most, width, lean if lean < LYING_DEG else 0.0)
+    lies = lean > LYING_DEG
+    return Spread(mean, least, most, width, 0.0 if lies else lean, lies)
 
 
 def _less(span_m: float, noise_m: float) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, OrientedBox, View
-from afkb_containers.judge import LEAST_CLAIM
+from afkb_containers.judge import LEAST_CLAIM, LITRES_PER_M3
 from afkb_containers.rims import CELL_M, Rim, rims_among
 from afkb_containers.ring import RIM_CELLS, ring_around
 from afkb_containers.settings import ContainerSettings
@@ -34,7 +34,6 @@ ABOVE_FLOOR_M = 0.05
 UNDERCUT_CELLS = 2
 """How far the wall of a basin reaches under its rim; further in, it is the room below a top."""
 MOST_SURE = 0.9
-LITRES_PER_M3 = 1000.0
 RING = (0.55, 0.75)
 """Share of what is seen around a hole that must be rim: none below, fully sure above."""
 SHOWN = (0.35, 0.60)
