@@ -11,6 +11,7 @@ from afkb.flow import Detection, Primitive, View
 from afkb_grounded.body_kernel import (
     SLICES,
     circle_fit,
+    foot_share,
     missing_within,
     principal,
     slice_widths,
@@ -19,6 +20,7 @@ from afkb_grounded.body_kernel import (
 )
 from afkb_grounded.texture import texture_measures
 from afkb_mapping.depth_points import points_of_pixels
+from afkb_mapping.order_statistics import percentile, percentiles
 from afkb_mapping.sensor_noise import depth_sigma
 
 MOST_POINTS = 1500
@@ -51,7 +53,7 @@ def body_measures(body: Detection, view: View) -> dict[str, float]:
     points, depths = points[depths > 0], depths[depths > 0]
     if len(points) < LEAST_POINTS:
         return found
-    return found | _shape_measures(points, float(np.median(depths)), extents, body.primitive)
+    return found | _shape_measures(points, percentile(depths, 50.0), extents, body.primitive)
 
 
 def _extents(body: Detection) -> tuple[float, float, float]:
@@ -133,9 +135,9 @@ def _circularity(
         plane, along = points @ axes[:2].T, points @ axes[2]
     else:
         plane, along = points[:, :2], points[:, 2]
-    low, high = np.percentile(along, (20, 80))
+    along = np.ascontiguousarray(along)
     radius, rms, across, narrow = circle_fit(
-        np.ascontiguousarray(plane), float(low), float(high), np.ascontiguousarray(along)
+        np.ascontiguousarray(plane), *percentiles(along, 20.0, 80.0), along
     )
     if not 0 < radius < math.inf:
         return SQUARE_CIRCULARITY
@@ -170,13 +172,8 @@ def _level_measures(points: NDArray[np.float64], sigma: float) -> dict[str, floa
     """Flat top, and foot: what it stands by, and what may stand on it."""
     within = TOP_WITHIN_M + sigma
     share, slope, _ = top_from_above(points, max(0.01, 2 * sigma), within)
-    heights = points[:, 2]
-    foot = points[heights <= np.percentile(heights, 25)]
-    whole = max(float(np.ptp(points[:, k])) for k in (0, 1))
-    found = {
-        "flat_top_share": share,
-        "base_share": max(float(np.ptp(foot[:, k])) for k in (0, 1)) / max(whole, 1e-3),
-    }
+    foot = percentile(np.ascontiguousarray(points[:, 2]), 25.0)
+    found = {"flat_top_share": share, "base_share": foot_share(points, foot)}
     if share >= FLAT_TOP_SHARE:
         found["top_bottom_angle_deg"] = math.degrees(math.atan(slope))
     return found

@@ -179,6 +179,22 @@ def top_from_above(
 
 
 @kernel
+def foot_share(points: NDArray[np.float64], foot_m: float) -> float:
+    """Greatest extent, along x or y, of the points up to a height over that of all of them."""
+    ends = np.empty((2, 2, 2))
+    ends[:, 0], ends[:, 1] = math.inf, -math.inf
+    for i in range(len(points)):
+        for which in range(2):
+            if which == 1 and points[i, 2] > foot_m:
+                continue
+            for k in range(2):
+                ends[which, 0, k] = min(ends[which, 0, k], points[i, k])
+                ends[which, 1, k] = max(ends[which, 1, k], points[i, k])
+    whole = max(ends[0, 1, 0] - ends[0, 0, 0], ends[0, 1, 1] - ends[0, 0, 1], 1e-3)
+    return float(max(ends[1, 1, 0] - ends[1, 0, 0], ends[1, 1, 1] - ends[1, 0, 1], 0.0) / whole)
+
+
+@kernel
 def missing_within(pixels: NDArray[np.int32], depth_m: NDArray[np.float32]) -> float:
     """Share of the pixels between a body's first and last one of each row that returned nothing."""
     width = depth_m.shape[1]

@@ -24,6 +24,7 @@ BLOCKED_SHARE = 1 / 3
 a cup blocks less, a table that a chair is pushed under blocks more."""
 FEW = 24
 """Points of an outline that distances are taken from."""
+_SPREAD = np.arange(FEW)
 FRONT = math.cos(math.radians(45))
 
 
@@ -122,7 +123,7 @@ def _free_above(
 
 def _few(points_xy: NDArray[np.float64]) -> NDArray[np.float64]:
     """FEW points spread over an outline; a short one is repeated."""
-    return points_xy[np.linspace(0, len(points_xy) - 1, FEW).astype(np.int64)]
+    return points_xy[_SPREAD * (len(points_xy) - 1) // (FEW - 1)]
 
 
 def _add_distances(

@@ -9,9 +9,10 @@ from functools import cached_property
 from afkb.flow import Detection, View
 from afkb.inference import network_of
 from afkb.knowledge import AfNet
+from afkb.ontology.names import BY_DETECTOR
 from afkb_grounded.bodies import body_measures
 from afkb_grounded.clearance import add_clearances
-from afkb_grounded.groundings import Grounding, afforded, groundings_of, priors_of
+from afkb_grounded.groundings import Grounding, afforded, by_kind, groundings_of, priors_of
 from afkb_grounded.openings import (
     gap_measures,
     opening_measures,
@@ -24,8 +25,9 @@ from afkb_grounded.uprights import parts_of
 
 LEAST_CLAIM = 0.1
 """Nothing is said of what is less probable: not to be found is no evidence for a hint."""
-CUT = 0.5
-"""How much a thing's measures say where it isn't seen whole: they are those of a part."""
+CUT = 0.8
+"""How often a surface that isn't seen whole, as most seats at a table, is of the size it looks
+(judged)."""
 
 NO_HOLLOW = {"depth_m": 0.0, "depth_over_opening": 0.0}
 """Of a body in which no hollow was seen."""
@@ -49,6 +51,19 @@ class GroundedDetector:
         return groundings_of(self._knowledge_base)
 
     @cached_property
+    def _by_kind(self) -> dict[str, list[Grounding]]:
+        return by_kind(self._groundings)
+
+    @cached_property
+    def _told_by(self) -> dict[str, str]:
+        features = self._knowledge_base.features.values()
+        return {
+            feature.name: feature.grounded_on[0]
+            for feature in features
+            if BY_DETECTOR in feature.grounded_by and feature.grounded_on
+        }
+
+    @cached_property
     def _weak(self) -> frozenset[str]:
         features = self._knowledge_base.features.values()
         return frozenset(feature.name for feature in features if feature.is_weak)
@@ -66,17 +81,24 @@ class GroundedDetector:
 
     def detect(self, view: View, earlier: Sequence[Detection]) -> list[Detection]:
         """What each thing affords besides; weak hints apart, with the measure `weak`."""
-        things = things_of(earlier)
+        things = things_of(earlier, self._told_by)
         things += parts_of(things, view)
-        measures = [measures_of(thing, view) for thing in things]
+        measures = [measures_of(thing, view) if self._may(thing) else {} for thing in things]
         add_clearances(things, measures, view)
         solid = [i for i, thing in enumerate(things) if {BODY, SURFACE} & set(thing.kinds)]
         priors = self._priors.afforded([things[i] for i in solid])
         by_thing = dict(zip(solid, priors, strict=True))
         found = []
         for i, thing in enumerate(things):
+            if not measures[i]:
+                continue
             found += self._told(thing, measures[i], by_thing.get(i, {}))
         return found
+
+    def _may(self, thing: Seen) -> list[Grounding]:
+        """What a thing may afford."""
+        found = {g.feature: g for kind in thing.kinds for g in self._by_kind.get(kind, ())}
+        return list(found.values())
 
     def _told(
         self, thing: Seen, measures: Mapping[str, float], prior: Mapping[str, float]
@@ -84,7 +106,7 @@ class GroundedDetector:
         first = thing.first
         certain = sureness(thing)
         says = {f: certain * p for f, p in
-                afforded(self._groundings, thing.kinds, measures).items()}  # fmt: skip
+                afforded(self._may(thing), measures).items()}  # fmt: skip
         for feature, p in prior.items():
             says[feature] = max(certain * p, says.get(feature, 0.0))
         says = {f: p for f, p in sorted(says.items()) if p >= LEAST_CLAIM}

@@ -63,10 +63,16 @@ def priors_of(knowledge_base: AfNet) -> dict[str, float]:
     }
 
 
-def afforded(
-    groundings: Iterable[Grounding], kinds: Iterable[str], measures: Mapping[str, float]
-) -> dict[str, float]:
-    """Feature to probability, of a thing of these kinds with these measures; none that are 0."""
-    kinds = set(kinds)
-    found = ((g.feature, g.probability(measures)) for g in groundings if g.kinds & kinds)
+def by_kind(groundings: Iterable[Grounding]) -> dict[str, list[Grounding]]:
+    """What each kind of thing may afford."""
+    found: dict[str, list[Grounding]] = {}
+    for grounding in groundings:
+        for kind in sorted(grounding.kinds):
+            found.setdefault(kind, []).append(grounding)
+    return found
+
+
+def afforded(groundings: Iterable[Grounding], measures: Mapping[str, float]) -> dict[str, float]:
+    """Feature to probability, of a thing with these measures; none that are 0."""
+    found = ((grounding.feature, grounding.probability(measures)) for grounding in groundings)
     return {feature: p for feature, p in found if p > 0}

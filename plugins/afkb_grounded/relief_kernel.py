@@ -49,19 +49,23 @@ def relief_of(
     sums = np.zeros(shape)
     tolerance = np.zeros(shape)
     u0, v0, u1, v1 = image_box
+    ta, za = -(T[0, 0] * nx + T[1, 0] * ny) / fx, T[2, 0] / fx
+    sa = (T[0, 0] * along_xy[0] + T[1, 0] * along_xy[1]) / fx
+    eye_s = (T[0, 3] - start_xy[0]) * along_xy[0] + (T[1, 3] - start_xy[1]) * along_xy[1]
+    eye_z = T[2, 3] - bottom_m
     for v in range(v0, v1, PIXEL_STEP):
+        y = (v - cy) / fy
+        dx, dy = T[0, 1] * y + T[0, 2], T[1, 1] * y + T[1, 2]
+        tb, sb = -(dx * nx + dy * ny), dx * along_xy[0] + dy * along_xy[1]
+        zb = T[2, 1] * y + T[2, 2]
         for u in range(u0, u1, PIXEL_STEP):
-            x, y = (u - cx) / fx, (v - cy) / fy
-            dx = T[0, 0] * x + T[0, 1] * y + T[0, 2]
-            dy = T[1, 0] * x + T[1, 1] * y + T[1, 2]
-            dz = T[2, 0] * x + T[2, 1] * y + T[2, 2]
-            toward = -(dx * nx + dy * ny)
+            x = u - cx
+            toward = ta * x + tb
             if toward < 0.05:
                 continue
             hit = away / toward
-            px, py = T[0, 3] + hit * dx - start_xy[0], T[1, 3] + hit * dy - start_xy[1]
-            i = math.floor((px * along_xy[0] + py * along_xy[1]) / cell_m)
-            j = math.floor((T[2, 3] + hit * dz - bottom_m) / cell_m)
+            i = math.floor((eye_s + hit * (sa * x + sb)) / cell_m)
+            j = math.floor((eye_z + hit * (za * x + zb)) / cell_m)
             if not (0 <= i < shape[0] and 0 <= j < shape[1]):
                 continue
             z = depth_m[v, u]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from afkb.flow import Detection
@@ -30,38 +30,41 @@ class Seen:
     measures: dict[str, float] = field(default_factory=dict)
 
 
-def things_of(earlier: Sequence[Detection]) -> list[Seen]:
-    """The things of a view, in the order in which they were first told of; no floor."""
+def things_of(earlier: Sequence[Detection], told_by: Mapping[str, str]) -> list[Seen]:
+    """The things of a view, in the order in which they were first told of; no floor, no ceiling.
+
+    `told_by`: a feature that has a detector of its own, to the kind of thing that affords it.
+    """
     told: dict[int, list[Detection]] = {}
     roots: list[int] = []
     for index, detection in enumerate(earlier):
         root = index if detection.about is None else roots[detection.about]
         roots.append(root)
         told.setdefault(root, []).append(detection)
-    things = (_thing(root, detections) for root, detections in told.items())
-    return [thing for thing in things if not thing.measures.get("is_floor")]
+    things = [_thing(root, detections, told_by) for root, detections in told.items()]
+    return [thing for thing in things if thing.kinds and not thing.measures.get("is_floor")]
 
 
-def _thing(index: int, detections: list[Detection]) -> Seen:
+def _thing(index: int, detections: list[Detection], told_by: Mapping[str, str]) -> Seen:
     affordances: dict[str, float] = {}
     measures: dict[str, float] = {}
     for detection in detections:
         measures |= detection.measures
         for name, p in detection.affordances.items():
             affordances[name] = max(p, affordances.get(name, 0.0))
-    return Seen(index, detections[0], _kinds(detections[0], affordances, measures),
-                affordances, measures)  # fmt: skip
+    open_ = "depth" in measures and any(
+        p >= OPEN_FROM for name, p in affordances.items() if told_by.get(name) == OPENING
+    )
+    kinds = _kinds(detections[0], open_, told_by)
+    return Seen(index, detections[0], kinds, affordances, measures)
 
 
-def _kinds(
-    first: Detection, affordances: dict[str, float], measures: dict[str, float]
-) -> tuple[str, ...]:
-    if first.segment_xy is not None:
-        return (UPRIGHT,)
+def _kinds(first: Detection, open_: bool, told_by: Mapping[str, str]) -> tuple[str, ...]:
+    """By what it affords most surely; what no own detector tells of is a body."""
     best = max(first.affordances, key=lambda name: first.affordances[name])
-    if best == "PassAbility":
-        return (GAP,)
-    if best == "SupportAbility":
-        return (SURFACE,)
-    open_ = affordances.get("ContainAbility", 0.0) >= OPEN_FROM and "depth" in measures
+    kind = told_by.get(best, BODY)
+    if kind == UPRIGHT:
+        return (UPRIGHT,) if first.segment_xy is not None else ()
+    if kind in (SURFACE, GAP):
+        return (kind,)
     return (BODY, OPENING) if open_ else (BODY,)

@@ -26,7 +26,7 @@ from afkb_mapping.sensor_noise import depth_sigma
 
 FARTHEST_M = 3.5
 """Beyond this a relief is noise: depth strays by a centimetre and a half."""
-MOST_UPRIGHTS = 4
+MOST_UPRIGHTS = 3
 LEAST_CELL_M = 0.012
 PIXELS_PER_CELL = 4
 LEAST_CELLS = 4
