@@ -23,11 +23,7 @@ from afkb_mapping.from_above import on_grid
 from afkb_surfaces.detector import SurfaceDetector
 from bench.detectors.data import Asked, Home
 from bench.detectors.seen import CLAIMED, inside
-from bench.detectors.surfaces import (
-    HEIGHT_TOLERANCE_M,
-    NOT_A_SUPPORT,
-    SEEN_WELL_TOP_PIXELS,
-)
+from bench.detectors.surfaces import HEIGHT_TOLERANCE_M, tops_of
 
 NEEDS = ("homes",)
 FRAMES = 40
@@ -120,11 +116,7 @@ def _ransac_tops(view: View) -> list[Top]:
 def _measured(method: Callable[[View], list[Top]], home: Home) -> dict[str, Any]:
     views = list(home.views())
     views = views[:: max(1, len(views) // FRAMES)]
-    things = [
-        t
-        for t in home.truth["things"]
-        if t["category"] not in NOT_A_SUPPORT and t["top_pixels"] >= SEEN_WELL_TOP_PIXELS
-    ]
+    things = tops_of(home.truth)
     for view in views[:WARM_UP]:
         method(view)
     taken, matched, found = [], 0, set()

@@ -8,25 +8,57 @@ from typing import Any
 import numpy as np
 
 from afkb.flow import Detection
-from bench.detectors.data import Asked
+from bench.detectors.data import Asked, Home
+from bench.detectors.nodes import nodes_per_surface, support_nodes
 from bench.detectors.seen import MARGIN_M, Run, described, inside
 
 NEEDS = ("homes",)
 HEIGHT_TOLERANCE_M = 0.03
 SEEN_WELL_TOP_PIXELS = 3000
+COVERED = 0.8
 NOT_A_SUPPORT = ("carpet", "window", "door", "picture", "mirror")
 
 
 def run(asked: Asked) -> dict[str, Any]:
     """The score of each home by its name."""
-    return {h.name: score(h.seen, h.truth) for h in asked.homes}
+    return {h.name: {**score(h.seen, h.truth), **_nodes(h)} for h in asked.homes}
+
+
+def _nodes(home: Home) -> dict[str, Any]:
+    tops = tops_of(home.truth)
+    return {"nodes_per_surface": nodes_per_surface(support_nodes(home), tops, HEIGHT_TOLERANCE_M)}
+
+
+def tops_of(truth: dict[str, Any]) -> list[dict[str, Any]]:
+    """Things whose upward surface was seen well, and is free.
+
+    What another thing lies on, such as a cabinet under its counter, shows no top of its own; what
+    the truth tells as one then is a shelf inside it, or its front.
+    """
+    things = truth["things"]
+    return [
+        t
+        for t in things
+        if t["category"] not in NOT_A_SUPPORT
+        and t["top_pixels"] >= SEEN_WELL_TOP_PIXELS
+        and not any(_covers(other, t) for other in things if other is not t)
+    ]
+
+
+def _covers(other: dict[str, Any], thing: dict[str, Any]) -> bool:
+    """Whether another thing lies on most of a thing."""
+    low, high = np.array(thing["min"][:2]), np.array(thing["max"][:2])
+    shared = np.minimum(high, other["max"][:2]) - np.maximum(low, other["min"][:2])
+    on_it = abs(other["min"][2] - thing["max"][2]) < MARGIN_M
+    return bool(on_it and np.prod(np.maximum(shared, 0)) > COVERED * np.prod(high - low))
 
 
 def table(result: dict[str, Any]) -> Iterator[str]:
     for name, s in result.items():
         yield (
             f"{name}: recall {s['recall']:.2f} of {s['seen_well']}, "
-            f"precision {s['precision']:.3f} of {s['claims']}"
+            f"precision {s['precision']:.3f} of {s['claims']}, "
+            f"{s['nodes_per_surface']:.2f} nodes per real surface"
         )
         if s["height_error_median_m"] is not None:
             yield (
@@ -43,11 +75,10 @@ def table(result: dict[str, Any]) -> Iterator[str]:
 
 def score(run: Run, truth: dict[str, Any]) -> dict[str, Any]:
     things = [t for t in truth["things"] if t["category"] not in NOT_A_SUPPORT]
+    tops = tops_of(truth)
     claims = [(i, d) for i, d in run.of("SupportAbility") if not d.measures.get("is_floor")]
     rows, errors = [], []
-    for thing in things:
-        if thing["top_pixels"] < SEEN_WELL_TOP_PIXELS:
-            continue
+    for thing in tops:
         row, heights = _support_row(thing, claims)
         rows.append(row)
         errors += heights
