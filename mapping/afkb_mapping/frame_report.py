@@ -68,7 +68,7 @@ def as_json(look: Look | SkippedFrame, network: Network) -> dict[str, object]:
         "x": float(T[0, 3]),
         "y": float(T[1, 3]),
         "yaw": yaw_of(T),
-        "free_floor": [outline.tolist() for outline in free_floor(look.view)],
+        "free_floor": [o.round(3).tolist() for o in free_floor(look.view)],
         "detections": [described(d, network) for d in look.detections],
     }
 
