@@ -3,8 +3,8 @@
     python -m bench.homes MAP --truth truth.json [--json]
 
 Prints: error of every view's position (m), supports that were seen well against the nodes of the
-map, and small things by kind. Truth has the form of `homes/*/truth.json`: world frame, z up, the
-first view's pose is the map's origin.
+map, small things by kind, and doorways where there is a list of them. Truth has the form of
+`homes/*/truth.json`: world frame, z up, the first view's pose is the map's origin.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from afkb_mapping.geometry import T_from_xy_yaw, yaw_of
+from bench.doorway_labels import list_for, said, scored
 
 WELL_SEEN_TOP_PIXELS = 3000
 WELL_SEEN_PIXELS = 600
@@ -141,7 +142,16 @@ def small_things(nodes: list[dict], truth: dict) -> dict:
     }
 
 
-def evaluate(folder: Path, truth: dict) -> dict:
+def doorways(folder: Path, listed: list[dict] | None, T_world_map: np.ndarray) -> dict | None:
+    """Doorways of the map against the list made by eye; None where there is no list."""
+    if listed is None:
+        return None
+    return scored(
+        listed, in_world(json.loads((folder / "map.json").read_text())["doorways"], T_world_map)
+    )
+
+
+def evaluate(folder: Path, truth: dict, listed: list[dict] | None = None) -> dict:
     first = truth["views"][0]
     T_world_map = T_from_xy_yaw(first["x"], first["y"], first["yaw"])
     nodes = in_world(nodes_of(folder), T_world_map)
@@ -155,6 +165,7 @@ def evaluate(folder: Path, truth: dict) -> dict:
         "supports": rows,
         "precision": precision(nodes, truth),
         "small_things": small_things(nodes, truth),
+        "doorways": doorways(folder, listed, T_world_map),
     }
 
 
@@ -164,7 +175,8 @@ def main() -> int:
     parser.add_argument("--truth", type=Path, required=True)
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
-    result = evaluate(arguments.map, json.loads(arguments.truth.read_text()))
+    truth = json.loads(arguments.truth.read_text())
+    result = evaluate(arguments.map, truth, list_for(arguments.truth.resolve().parent))
     if arguments.json:
         json.dump(result, sys.stdout, indent=1)
         return 0
@@ -172,6 +184,8 @@ def main() -> int:
         if key == "supports":
             for row in value:
                 print("  ", row)
+        elif key == "doorways":
+            print(key, said(value) if value else "no list of them")
         else:
             print(key, value)
     return 0
