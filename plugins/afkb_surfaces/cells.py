@@ -27,9 +27,6 @@ A, B, C, NX, NY, NZ, X, Y, Z, DEPTH, SIGMA_TILT, COUNT = range(12)
 """Rows of the planes: 1/z = A u + B v + C; normal, centroid (map frame); what they are worth."""
 N_ROWS = 12
 
-FINE_FOCAL_PX = 800.0
-"""An image finer than this is thinned to about half as many pixels a side before its cells are
-fitted: a cell need not see finer than the surfaces that it looks for."""
 FLAT = 1.6
 """A plane fits where the pixels stray from it by at most this many times the noise."""
 LEAST_WINDOW, LEAST_CELL = 0.3, 0.5
@@ -62,9 +59,12 @@ class Cells:
         intrinsics: NDArray[np.float64],
         T_map_camera: NDArray[np.float64],
         softness_m: float,
+        thin: int,
     ) -> Cells:
-        """Planes of the cells of a depth image (H, W); `intrinsics` is fx, fy, cx, cy."""
-        thin = max(1, round(float(intrinsics[0]) / FINE_FOCAL_PX + 0.1))
+        """Planes of the cells of a depth image (H, W); `intrinsics` is fx, fy, cx, cy.
+
+        Every `thin`-th row and column is looked at: a cell is that many times larger.
+        """
         coarse = np.ascontiguousarray(depth_m[::thin, ::thin], dtype=np.float32)
         moments = cell_moments(coarse)
         fits = window_fits(moments)

@@ -58,7 +58,7 @@ class SurfaceDetector:
             return []
         s, camera, T = self.settings, view.camera, view.T_map_camera
         intrinsics = np.array([camera.fx, camera.fy, camera.cx, camera.cy])
-        cells = Cells.of(view.depth_m, intrinsics, T, s.softness_m)
+        cells = Cells.of(view.depth_m, intrinsics, T, s.softness_m, self._thin(camera.fx))
         tilt = math.radians(s.normal_to_up_deg[3])
         kinds = classify(cells.planes, tilt, UPRIGHT_WITHIN_RAD, s.floor_m, cells.noise)
         links = links_of(cells.planes, kinds, s.step_m, cells.noise)
@@ -75,6 +75,16 @@ class SurfaceDetector:
         parts = order_by_label(labels.ravel(), every)
         walls = self._bounds(cells, parts, upright, returning, camera.fx)
         return [*self._supports(view, cells, labels, parts, upward, returning), *walls]
+
+    def _thin(self, focal_px: float) -> int:
+        """Every how manieth row and column is enough for cells.
+
+        A cell need not see finer than the surfaces that it looks for; where borders are not
+        settled to the pixel, half as finely will do.
+        """
+        return max(1, round(focal_px / KINECT_FOCAL_PX - 0.15)) * (
+            1 if self.settings.borders else 2
+        )
 
     def _supports(
         self,

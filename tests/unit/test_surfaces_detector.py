@@ -101,7 +101,7 @@ def test_a_cell_plane_is_the_least_squares_fit_of_inverse_depth() -> None:
     view = view_of([FLOOR], rng=np.random.default_rng(5))
     assert view.depth_m is not None
     intrinsics = np.array([CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy])
-    planes = Cells.of(view.depth_m, intrinsics, view.T_map_camera, 0.004).planes
+    planes = Cells.of(view.depth_m, intrinsics, view.T_map_camera, 0.004, 1).planes
     r, c = 90, 80
     assert planes[r, COUNT, c] > 0
     v, u = np.mgrid[4 * r - 4 : 4 * r + 8, 4 * c - 4 : 4 * c + 8].reshape(2, -1)
@@ -136,9 +136,9 @@ def test_without_borders_a_table_is_the_same_to_a_cell() -> None:
     detector = SurfaceDetector(replace(SurfaceSettings(), borders=False))
     view = view_of([FLOOR, table(1.6, 0.1, 0.73)], rng=np.random.default_rng(3))
     _, found = (d for d in detector.detect(view) if d.affords("SupportAbility"))
-    assert found.position_xyz == pytest.approx([1.6, 0.1, 0.73], abs=0.02)
-    assert found.box.size_xyz[:2] == pytest.approx((1.2, 0.8), abs=0.08)
-    assert ring_area(found.rings_xy[0]) == pytest.approx(0.96, rel=0.1)
+    assert found.position_xyz == pytest.approx([1.6, 0.1, 0.73], abs=0.05)
+    assert found.box.size_xyz[:2] == pytest.approx((1.2, 0.8), abs=0.1)
+    assert ring_area(found.rings_xy[0]) == pytest.approx(0.96, rel=0.15)
 
 
 def test_a_blind_border_of_the_sensor_cuts_what_reaches_it() -> None:
