@@ -132,13 +132,13 @@ def test_what_stands_before_a_table_occludes_it_and_makes_no_hole() -> None:
     assert len(found.rings_xy) == 1
 
 
-def test_without_borders_a_table_is_the_same_to_a_cell() -> None:
+def test_without_borders_a_table_is_smaller_by_a_cell_at_most() -> None:
     detector = SurfaceDetector(replace(SurfaceSettings(), borders=False))
     view = view_of([FLOOR, table(1.6, 0.1, 0.73)], rng=np.random.default_rng(3))
     _, found = (d for d in detector.detect(view) if d.affords("SupportAbility"))
     assert found.position_xyz == pytest.approx([1.6, 0.1, 0.73], abs=0.05)
     assert found.box.size_xyz[:2] == pytest.approx((1.2, 0.8), abs=0.1)
-    assert ring_area(found.rings_xy[0]) == pytest.approx(0.96, rel=0.15)
+    assert ring_area(found.rings_xy[0]) == pytest.approx(0.96, rel=0.2)
 
 
 def test_a_blind_border_of_the_sensor_cuts_what_reaches_it() -> None:
