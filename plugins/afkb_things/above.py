@@ -68,12 +68,11 @@ def _over_raster(
     raster: NDArray[np.uint64],
     origin_xy: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.uint64]]:
-    """Every other pixel over a support: x, y from the raster's corner and height (N, 3); bits."""
+    """Pixels over a support: x, y from the raster's corner and height (N, 3); bits."""
     rows, cols = depth_m.shape
-    most = ((rows + 1) // 2) * ((cols + 1) // 2)
-    xyh, bits, n = np.empty((most, 3)), np.empty(most, np.uint64), 0
-    for v in range(0, rows, 2):
-        for u in range(0, cols, 2):
+    xyh, bits, n = np.empty((depth_m.size, 3)), np.empty(depth_m.size, np.uint64), 0
+    for v in range(rows):
+        for u in range(cols):
             if depth_m[v, u] <= 0:
                 continue
             x, y = points[v, u, 0] - origin_xy[0], points[v, u, 1] - origin_xy[1]
@@ -109,7 +108,8 @@ def _refit(sums: NDArray[np.float64], plane: NDArray[np.float64]) -> None:
 @kernel
 def label_things(
     depth_m: NDArray[np.float32],
-    points: NDArray[np.float32],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
     planes: NDArray[np.float64],
     large: NDArray[np.bool_],
     raster: NDArray[np.uint64],
@@ -117,27 +117,41 @@ def label_things(
     slope: NDArray[np.float64],
     low_m: float,
     high_m: float,
-) -> tuple[NDArray[np.int16], NDArray[np.float32]]:
+) -> tuple[NDArray[np.float32], NDArray[np.int16], NDArray[np.float32]]:
     """Say which support each pixel's point stands on, from 1, and how high over it.
 
-    Returns labels (H, W), 0 where there is none, -1 on a support or the floor itself, ON_WALL on
-    an upright plane; and heights over the support (H, W) float32, m.
+    Returns points (H, W, 3) float32, map frame, 0 where nothing returned; labels (H, W), 0 where
+    there is none, -1 on a support or the floor itself, ON_WALL on an upright plane; and heights
+    over the support (H, W) float32, m.
 
     `slope` (3,): what one metre of depth changes in height is slope . (u, v, 1).
     """
     rows, cols = depth_m.shape
+    fx, fy, cx, cy = intrinsics
+    T = T_map_camera
+    bx, by, bz = T[0, 3], T[1, 3], T[2, 3]
+    ox, oy = origin_xy[0], origin_xy[1]
+    right = np.empty((cols, 3))
+    for u in range(cols):
+        for k in range(3):
+            right[u, k] = T[k, 0] * ((u - cx) / fx)
+    points = np.zeros((rows, cols, 3), np.float32)
     out = np.zeros((rows, cols), np.int16)
     overs = np.zeros((rows, cols), np.float32)
     for v in range(rows):
+        down = (v - cy) / fy
+        ax, ay, az = T[0, 1] * down + T[0, 2], T[1, 1] * down + T[1, 2], T[2, 1] * down + T[2, 2]
         for u in range(cols):
             z = depth_m[v, u]
             if z <= 0:
                 continue
-            h = points[v, u, 2]
+            px, py = (right[u, 0] + ax) * z + bx, (right[u, 1] + ay) * z + by
+            h = (right[u, 2] + az) * z + bz
+            points[v, u, 0], points[v, u, 1], points[v, u, 2] = px, py, h
             if h < FLOOR_M:
                 out[v, u] = -1
                 continue
-            x, y = points[v, u, 0] - origin_xy[0], points[v, u, 1] - origin_xy[1]
+            x, y = px - ox, py - oy
             i, j = int(x * CELLS_PER_M), int(y * CELLS_PER_M)
             if not (0 <= i < raster.shape[0] and 0 <= j < raster.shape[1]):
                 continue
@@ -167,4 +181,4 @@ def label_things(
                     out[v, u] = -1
                     if large[k]:
                         break
-    return out, overs
+    return points, out, overs

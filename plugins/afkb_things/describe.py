@@ -12,6 +12,8 @@ from afkb_things.primitives import box_of, primitive_of
 from afkb_things.settings import ThingSettings
 from afkb_things.wholeness import wholeness
 
+SAMPLES = 3000
+"""About so many points say how large a body is; its footprint is of all."""
 HIGHEST_M = ThingSettings().above_m[1]
 LEAST_WHOLE = 0.2
 """What is hardly ever a whole body has no shape to be fitted."""
@@ -19,9 +21,10 @@ LEAST_WHOLE = 0.2
 
 def body_detection(body: Body, attached: float, detector: str) -> Detection:
     """A body from its base up to its top; `attached` is the share of its outline that goes on."""
-    sides = sides_from_above(body.points)
-    base, top = body.base_m, percentile(body.points[:, 2], 98.0)
-    box = box_around(on_grid(body.points, 0.005), top, 0.0, max(top - base, 0.0))
+    points = body.points[:: max(1, len(body.points) // SAMPLES)]
+    sides = sides_from_above(points)
+    base, top = body.base_m, percentile(points[:, 2], 98.0)
+    box = box_around(on_grid(points, 0.005), top, 0.0, max(top - base, 0.0))
     whole = wholeness(body, top - base, HIGHEST_M, sides[0], attached)
     shape = primitive_of(body, box) if whole >= LEAST_WHOLE else None
     if shape is not None:
@@ -35,7 +38,7 @@ def body_detection(body: Body, attached: float, detector: str) -> Detection:
         covariance_xyz=np.diag([spread, spread, 0.25 * spread]),
         footprint_xy=on_grid(body.points, 0.02),
         n_pixels=len(body.u),
-        range_m=percentile(body.depth_m, 1.0),
+        range_m=percentile(body.depth_m[:: max(1, len(body.u) // SAMPLES)], 1.0),
         image_box=body.image_box,
         cut_by_image=body.cut_by_image,
         measures=_measures(body, base, top, *sides, attached),

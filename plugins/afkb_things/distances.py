@@ -35,15 +35,17 @@ def distance(
     if kind == LYING:
         cos, sin = math.cos(p[4]), math.sin(p[4])
         along, across = x * cos + y * sin, y * cos - x * sin
-        return _capped(math.hypot(across, z - base_m - p[2]) - p[2], abs(along) - p[3])
+        return _capped(
+            math.sqrt(across * across + (z - base_m - p[2]) ** 2) - p[2], abs(along) - p[3]
+        )
     if kind == CYLINDER:
         half = 0.5 * (p[3] - base_m)
-        return _capped(math.hypot(x, y) - p[2], abs(z - base_m - half) - half)
+        return _capped(math.sqrt(x * x + y * y) - p[2], abs(z - base_m - half) - half)
     if kind == CONE:
         half = 0.5 * (p[4] - base_m)
         slope = (p[3] - p[2]) / max(2.0 * half, 1e-3)
         radius = p[2] + slope * (z - base_m)
-        side = (math.hypot(x, y) - radius) / math.sqrt(1.0 + slope * slope)
+        side = (math.sqrt(x * x + y * y) - radius) / math.sqrt(1.0 + slope * slope)
         return _capped(side, abs(z - base_m - half) - half)
     cos, sin = math.cos(p[4]), math.sin(p[4])
     half = 0.5 * (p[5] - base_m)
@@ -63,7 +65,7 @@ def distance(
 def _capped(side: float, cap: float) -> float:
     """Distance from a shape that ends at caps at right angles to its side."""
     if side > 0.0 and cap > 0.0:
-        return math.hypot(side, cap)
+        return math.sqrt(side * side + cap * cap)
     return max(side, cap)
 
 

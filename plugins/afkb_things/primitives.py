@@ -21,8 +21,8 @@ from afkb_things.distances import (
     residuals,
 )
 
-SAMPLES = 60
-ROUNDS = 6
+SAMPLES = 48
+ROUNDS = 5
 DEEP_M = 0.010
 """What lies deeper inside a shape, the noise added, isn't of its surface but of a hollow."""
 PER_PARAMETER = 0.03

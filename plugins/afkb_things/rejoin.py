@@ -51,12 +51,11 @@ def rejoined(bodies: Sequence[Body], scene: Scene) -> list[Body]:
             first, second = kept[a], kept[b]
             if first is None or second is None or abs(tops[a] - tops[b]) > _level_m(first, second):
                 continue
-            both = _both(first, second)
             if _touch(first, second):
-                joined = _hollow(both, scene, taken)
+                joined = _hollow(_both(first, second), scene, taken)
             else:
                 covered = (behind[a] >= LEAST_BEHIND) & (behind[b] >= LEAST_BEHIND)
-                joined = both if covered.any() and _is_one(both, first, second, scene) else None
+                joined = _one(first, second, scene) if covered.any() else None
             if joined is not None:
                 kept[a], kept[b] = None, joined
                 behind[b] += behind[a]
@@ -144,15 +143,16 @@ def _hull(body: Body) -> Hull:
     return border_lines(corners.astype(np.float64))
 
 
-def _is_one(both: Body, a: Body, b: Body, scene: Scene) -> bool:
-    """Whether two parts lie on the outline of one solid, and no support is seen between them."""
+def _one(a: Body, b: Body, scene: Scene) -> Body | None:
+    """Two parts as one, if they lie on the outline of one solid, and no support is between."""
+    both = _both(a, b)
     hull = _hull(both)
     margin = OUTLINE_M + 2.0 * both.sigma_m
     top = percentile(both.points[:, 2], 98.0) - BELOW_TOP_M
     if min(_share_on(p.points, top, *hull, margin) for p in (a, b)) < OUTLINE_SHARE:
-        return False
+        return None
     u, _ = _seen_down(scene, scene.labels >= 0, both, hull)
-    return len(u) < SEEN_THROUGH
+    return both if len(u) < SEEN_THROUGH else None
 
 
 @kernel

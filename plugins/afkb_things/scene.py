@@ -16,6 +16,9 @@ from afkb_things.roots import over_roots, roots_of
 from afkb_things.settings import ThingSettings
 from afkb_things.supports import Supports
 
+THIN = 3
+"""Every such row and column of the image says how a support slopes."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
@@ -60,13 +63,14 @@ class Scene:
         if view.depth_m is None or view.camera is None:
             return None
         intrinsics, T = intrinsics_of(view), view.T_map_camera
-        points = map_points(view.depth_m, intrinsics, T)
         supports = Supports.of(earlier)
         grid = (supports.raster, supports.origin_xy)
-        planes = fit_supports(view.depth_m, points, supports.heights_m, *grid)
+        coarse = np.ascontiguousarray(view.depth_m[::THIN, ::THIN])
+        sparse = map_points(coarse, intrinsics / THIN, T)
+        planes = fit_supports(coarse, sparse, supports.heights_m, *grid)
         slope = height_per_depth(intrinsics, T)
-        labels, overs = label_things(
-            view.depth_m, points, planes, supports.large, *grid, slope, *settings.above_m
+        points, labels, overs = label_things(
+            view.depth_m, intrinsics, T, planes, supports.large, *grid, slope, *settings.above_m
         )
         roots = roots_of(
             supports.heights_m, supports.areas_m2, supports.large, supports.raster,
