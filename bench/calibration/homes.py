@@ -53,7 +53,7 @@ class HomeLabels:
       heights of what has no other such surface, as a cabinet hasn't, and where nothing is. The
       floor isn't judged: it would always be right.
     - Contain: right if its centre lies on a hollow or closed small thing, or a large container;
-      intrinsically: if on a closed one.
+      intrinsically: if on a closed one, and untold on a hollow one: its inside may be hidden.
     - Dispose, of a body that was cut out: right if it is one thing, by its box.
     - Any other feature but grasps: what the ontology says of the category of the thing that it
       lies on, where the truth's word has one. Grasps have no label: the ontology lists the usual
@@ -84,8 +84,7 @@ class HomeLabels:
         if feature == "SupportAbility" and "area" in claim.measures:
             told = self._supports(claim)
         elif feature in CONTAINING:
-            kind = kind_of(thing) if thing else None
-            told = kind == "closed" if feature.startswith("Intrinsic") else kind is not None
+            told = _contains(kind_of(thing) if thing else None, feature)
         elif feature == "DisposeAbility" and claim.pixels is not None:
             told = thing is not None and _iou(claim, thing) >= SAME_BODY_IOU
         else:
@@ -123,6 +122,13 @@ class HomeLabels:
                 if a.category in kinds and a.strength >= AFFORDS_FROM
             }
         return feature in self._afforded[word]
+
+
+def _contains(kind: str | None, feature: str) -> bool | None:
+    if feature == "ContainAbility" or kind is None:
+        return kind is not None
+    # Whether the inside of what is hollow is in sight, the truth doesn't say.
+    return {"closed": True, "large": False}.get(kind)
 
 
 def _iou(claim: Detection, thing: dict[str, Any]) -> float:

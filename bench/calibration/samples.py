@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from afkb.flow import Detection
@@ -54,8 +54,9 @@ def samples_of(run: Run, labels: Labels) -> Iterator[Sample]:
     for (index, stated), scored, stamp in zip(run.views, run.scored, run.stamps, strict=True):
         scene = labels.scene(index, stamp)
         for before, after in zip(scored, stated, strict=True):
+            shown = _with_pixels(before, scored)
             for feature, score in before.affordances.items():
-                verdict = labels.judge(before, feature, index) if score > 0 else None
+                verdict = labels.judge(shown, feature, index) if score > 0 else None
                 if verdict is None:
                     continue
                 yield Sample(
@@ -70,3 +71,10 @@ def samples_of(run: Run, labels: Labels) -> Iterator[Sample]:
                     terms=terms_of(before, feature),
                     right=verdict[0],
                 )
+
+
+def _with_pixels(claim: Detection, scored: Sequence[Detection]) -> Detection:
+    """A claim about an earlier detection is shown by the pixels of that."""
+    if claim.pixels is not None or claim.about is None:
+        return claim
+    return replace(claim, pixels=scored[claim.about].pixels)

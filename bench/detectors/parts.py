@@ -17,6 +17,7 @@ PARTS = (
     "robustness",
     "calibration",
     "doorways",
+    "overlays",
     "cost",
     "speed",
 )

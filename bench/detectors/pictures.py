@@ -10,32 +10,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
+from afkb_mapping.one_per_thing import one_per_thing
 from bench.detectors.seen import CLAIMED, Run
 
-PICTURES = 6
+PICTURES = 8
 """Views drawn of each recording, evenly over it."""
 FAR_M = 5.0
 COLORS = {
-    "SupportAbility": (80, 220, 80),
     "ContainAbility": (60, 120, 255),
-    "DisposeAbility": (255, 200, 60),
-    "BlockAbility": (160, 160, 160),
+    "SupportAbility": (80, 220, 80),
     "PassAbility": (255, 80, 255),
+    "BlockAbility": (160, 160, 160),
+    "DisposeAbility": (255, 200, 60),
 }
-OTHER = (0, 230, 230)
+"""What is drawn, BGR; of a detection that claims several the first."""
 FLOOR_COLOR = (70, 110, 70)
 Image = NDArray[np.uint8]
 
 
-def draw_views(name: str, views: Iterable[View], seen: Run, folder: Path) -> None:
-    """Write `NAME-INDEX.png` for some of the views that were seen."""
+def draw_views(name: str, views: Iterable[View], seen: Run, folder: Path) -> int:
+    """Write `NAME-INDEX.png` for some of the views that were seen; returns how many."""
     folder.mkdir(parents=True, exist_ok=True)
-    wanted = {i for i, _ in seen.views[:: max(1, len(seen.views) // PICTURES)]}
-    said = dict(seen.views)
+    wanted = {i for i, _ in seen.views[:: max(1, -(-len(seen.views) // PICTURES))]}
+    said, drawn = dict(seen.views), 0
     for view in views:
         if view.index in wanted and view.index in said:
             path = folder / f"{name}-{view.index:04d}.png"
-            cv2.imwrite(str(path), overlay(view, said[view.index]))
+            cv2.imwrite(str(path), overlay(view, one_per_thing(said[view.index])))
+            drawn += 1
+    return drawn
 
 
 def overlay(view: View, detections: Iterable[Detection]) -> Image:
@@ -44,10 +47,10 @@ def overlay(view: View, detections: Iterable[Detection]) -> Image:
     grey = 230 * (1 - np.clip(view.depth_m / FAR_M, 0, 1)) * (view.depth_m > 0)
     picture = cv2.cvtColor(grey.astype(np.uint8), cv2.COLOR_GRAY2BGR)
     for d in sorted(detections, key=lambda d: -len(d.footprint_xy)):
-        feature = max(d.affordances, key=lambda name: d.affordances[name])
-        if d.affordances[feature] < CLAIMED:
+        feature = next((name for name in COLORS if d.affords(name, CLAIMED)), None)
+        if feature is None:
             continue
-        color = FLOOR_COLOR if d.measures.get("is_floor") else COLORS.get(feature, OTHER)
+        color = FLOOR_COLOR if d.measures.get("is_floor") else COLORS[feature]
         if feature == "SupportAbility":
             _dots(picture, view, d, color)
         else:
