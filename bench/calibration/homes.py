@@ -55,9 +55,9 @@ class HomeLabels:
     - Contain: right if its centre lies on a hollow or closed small thing, or a large container;
       intrinsically: if on a closed one, and untold on a hollow one: its inside may be hidden.
     - Dispose, of a body that was cut out: right if it is one thing, by its box.
-    - Any other feature but grasps: what the ontology says of the category of the thing that it
-      lies on, where the truth's word has one. Grasps have no label: the ontology lists the usual
-      ones, and a body that is held otherwise is no error.
+    - Any other feature but grasps: wrong of what is no surface and no one thing; else what the
+      ontology says of the category, where the truth's word has one. Grasps have no label: the
+      ontology lists the usual ones, and a body that is held otherwise is no error.
     """
 
     def __init__(self, home: Home, kb: AfNet) -> None:
@@ -74,22 +74,29 @@ class HomeLabels:
         nearest = int(np.abs(self._stamps - stamp).argmin())
         return f"{self._home} {self._views[nearest]['room']}"
 
-    def judge(self, claim: Detection, feature: str, index: int) -> tuple[bool, str] | None:
+    def judge(
+        self, claim: Detection, feature: str, index: int, thing: Detection
+    ) -> tuple[bool, str] | None:
         """Whether the claim is so, and of which thing."""
-        if feature in NO_LABEL or claim.measures.get("is_floor"):
+        if feature in NO_LABEL or thing.measures.get("is_floor"):
             return None
-        thing = thing_at(claim, self._things)
-        name = thing["name"] if thing else _place(claim)
+        meant = thing_at(claim, self._things)
         told: bool | None
-        if feature == "SupportAbility" and "area" in claim.measures:
-            told = self._supports(claim)
-        elif feature in CONTAINING:
-            told = _contains(kind_of(thing) if thing else None, feature)
-        elif feature == "DisposeAbility" and claim.pixels is not None:
-            told = thing is not None and _iou(claim, thing) >= SAME_BODY_IOU
+        if feature in CONTAINING:
+            told = _contains(kind_of(meant) if meant else None, feature)
         else:
-            told = self._afforded_by(thing, feature)
-        return None if told is None else (told, name)
+            told = self._is_one(thing, meant)
+            if told and claim.about is not None:
+                told = self._afforded_by(meant, feature)
+        return None if told is None else (told, meant["name"] if meant else _place(claim))
+
+    def _is_one(self, thing: Detection, meant: dict[str, Any] | None) -> bool | None:
+        """Whether a surface is one, or a body one thing; None of what is neither."""
+        if "area" in thing.measures and "SupportAbility" in thing.affordances:
+            return self._supports(thing)
+        if thing.pixels is None or "stand" not in thing.measures:
+            return None
+        return meant is not None and _iou(thing, meant) >= SAME_BODY_IOU
 
     def _supports(self, claim: Detection) -> bool | None:
         height = claim.measures["height"]

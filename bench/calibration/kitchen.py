@@ -20,7 +20,9 @@ class KitchenLabels:
         """A stretch of the sequence."""
         return f"{self.building} {frame_number(index) // TOGETHER}"
 
-    def judge(self, claim: Detection, feature: str, index: int) -> tuple[bool, str] | None:
+    def judge(
+        self, claim: Detection, feature: str, index: int, thing: Detection
+    ) -> tuple[bool, str] | None:
         """Whether the claim is so, and of which entry."""
         if claim.measures.get("is_floor"):
             return None

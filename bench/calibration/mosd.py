@@ -32,18 +32,20 @@ class CloudLabels:
         """The cloud."""
         return self._clouds[index].name
 
-    def judge(self, claim: Detection, feature: str, index: int) -> tuple[bool, str] | None:
+    def judge(
+        self, claim: Detection, feature: str, index: int, thing: Detection
+    ) -> tuple[bool, str] | None:
         """Whether the claim is so, and of which object."""
         cloud = self._clouds[index]
-        shown = _labels_under(claim, cloud)
+        shown = _labels_under(thing, cloud)
         labelled = shown[shown > 0]
         if claim.measures.get("is_floor") or len(labelled) <= LABELLED * max(len(shown), 1):
             return None
         best = int(np.bincount(labelled).argmax())
         name = f"{cloud.name} {best}"
-        if feature == "SupportAbility" and "area" in claim.measures:
+        if feature == "SupportAbility" and "area" in thing.measures:
             return bool((labelled == best).mean() >= MOSTLY), name
-        if claim.pixels is not None:
+        if thing.pixels is not None:
             whole = best > 1 and _overlap(cloud.objects, labelled, best) >= IOU
         else:
             whole = best > 1 and bool((labelled == best).mean() >= MOSTLY)

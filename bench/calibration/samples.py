@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 from afkb.flow import Detection
@@ -44,8 +44,13 @@ class Labels(Protocol):
         """What is drawn together with a view: its room, or its cloud."""
         ...
 
-    def judge(self, claim: Detection, feature: str, index: int) -> tuple[bool, str] | None:
-        """Whether a claim is so, and the thing's name; None where the truth can't tell."""
+    def judge(
+        self, claim: Detection, feature: str, index: int, thing: Detection
+    ) -> tuple[bool, str] | None:
+        """Whether a claim is so, and the thing's name; None where the truth can't tell.
+
+        `thing`: the detection that the claim is about, or the claim itself.
+        """
         ...
 
 
@@ -54,10 +59,10 @@ def samples_of(run: Run, labels: Labels) -> Iterator[Sample]:
     for (index, stated), scored, stamp in zip(run.views, run.scored, run.stamps, strict=True):
         scene = labels.scene(index, stamp)
         for before, after in zip(scored, stated, strict=True):
-            shown = _with_pixels(before, scored)
+            thing = _told_first(before, scored)
             for feature, score in before.affordances.items():
-                verdict = labels.judge(shown, feature, index) if score > 0 else None
-                if verdict is None:
+                verdict = labels.judge(before, feature, index, thing)
+                if verdict is None or score <= 0:
                     continue
                 yield Sample(
                     building=labels.building,
@@ -73,8 +78,7 @@ def samples_of(run: Run, labels: Labels) -> Iterator[Sample]:
                 )
 
 
-def _with_pixels(claim: Detection, scored: Sequence[Detection]) -> Detection:
-    """A claim about an earlier detection is shown by the pixels of that."""
-    if claim.pixels is not None or claim.about is None:
-        return claim
-    return replace(claim, pixels=scored[claim.about].pixels)
+def _told_first(claim: Detection, scored: Sequence[Detection]) -> Detection:
+    while claim.about is not None:
+        claim = scored[claim.about]
+    return claim
