@@ -35,7 +35,7 @@ class Grounding:
             p = min(p, self.strength * membership(value, limits))
             if p <= 0:
                 return 0.0
-        return p
+        return float(p)
 
 
 def groundings_of(knowledge_base: AfNet) -> list[Grounding]:

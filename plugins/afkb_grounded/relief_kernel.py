@@ -17,7 +17,7 @@ PIXEL_STEP = 2
 MOST_RAISED_M, MOST_SUNK_M = 0.16, 0.12
 """What stands out farther stands before the plane, what lies deeper behind is seen through it."""
 LEAST_STEP_M = 0.008
-NOISE_STEPS = 1.5
+NOISE_STEPS = 3.0
 """A cell's mean must be off by so many standard deviations of one depth, and by LEAST_STEP_M."""
 
 

@@ -24,9 +24,9 @@ from afkb_mapping.depth_points import intrinsics_of
 from afkb_mapping.grid_components import AREA, HEIGHT, LEFT, TOP, WIDTH, components
 from afkb_mapping.sensor_noise import depth_sigma
 
-FARTHEST_M = 3.5
-"""Beyond this a relief is noise: depth strays by a centimetre and a half."""
-MOST_UPRIGHTS = 3
+FARTHEST_M = 2.5
+"""Beyond this a relief is noise: depth strays by a centimetre, and steps by more."""
+MOST_UPRIGHTS, MOST_PARTS = 3, 12
 LEAST_CELL_M = 0.012
 PIXELS_PER_CELL = 4
 LEAST_CELLS = 4
@@ -72,7 +72,8 @@ def _parts(upright: Detection, view: View) -> Iterator[Seen]:
     own = ((kinds != FLAT) & (kinds != UNKNOWN)).astype(np.uint8)
     labels, measures = components(own, False)
     sums = part_sums(labels, kinds, offsets, lost, len(measures))
-    for k in range(1, len(measures)):
+    by_size = sorted(range(1, len(measures)), key=lambda k: -int(measures[k, AREA]))
+    for k in by_size[:MOST_PARTS]:
         row = measures[k]
         if row[AREA] < LEAST_CELLS or _bounded(kinds, labels, k, row) < BOUNDED:
             continue

@@ -29,7 +29,7 @@ _CLASSES = {
     "Trapezoid": "", "Afbit": "", "AfbitRule": "", "Relationship": "", "Dual": "Relationship",
     "CoOccurrence": "Relationship", "EvidenceClass": "", "RoomEvidence": "", "Figure": "",
     "ObjectInRoom": "Figure", "ObjectWithObject": "Figure", "ObjectOnSupport": "Figure",
-    "ReportRate": "", "NetworkParameter": "", "MugEntity": "",
+    "ReportRate": "", "NetworkParameter": "", "MugEntity": "", "Measure": "",
 }  # fmt: skip
 _OBJECTS = """ofFeature Affordance|ofCategory ObjectCategory|ofRoom RoomCategory|scale Scale
 predictedScale Scale|shape Shape|madeOf Material|hasTrait Trait|ofPart ObjectPart|pose Pose
@@ -39,18 +39,21 @@ givenCategory ObjectCategory"""
 _NUMBERS = """lengthMin lengthMax widthMin widthMax heightMin heightMax topMin topMax
 massMin massMax extentMin extentMax z1 n1 n2 z2 strength distanceMean distanceSd sizeXTypical
 sizeYTypical matchingWeight expectedNumber expectedCount dispersion value probability successes
-trials rate evidenceBottomMin"""
-_TEXTS = "standsOn relation parameterName"
+trials rate evidenceBottomMin groundingStrength"""
+_TEXTS = "standsOn relation parameterName groundedBy groundedOn measureName measureOf primitive"
 _ANNOTATIONS = "status grounding groundingStatus observability entityClass fromRow"
 _SAYS = 'rdfs:label "%s"@en ; skos:definition "What it is, said well."@en ; skos:example "one"@en'
 _FROM = ':status "proposed" ; dcterms:source "nobody"@en'
 _INDIVIDUALS = """
 :ContainAbility a :StructuralAffordance ; SAYS ; FROM ; :grounding "a concavity"@en ;
-  :groundingStatus "stated" ; :observability "direct" .
+  :groundingStatus "stated" ; :observability "direct" ; :groundedBy "detector" ;
+  :groundedOn "opening" ; :groundingStrength 8.0e-1 .
 :SupportAbility a :StructuralAffordance ; SAYS ; FROM ; :grounding "a flat top"@en .
 :HookGrasp a :GraspAffordance ; SAYS ; FROM ; :grounding "a bar"@en ; skos:broader :SupportAbility .
 :ContainAbility.depth_m a :Trapezoid ; LABEL ; FROM ; :ofFeature :ContainAbility ;
   :parameterName "depth_m" ; :z1 0.0e0 ; :n1 1.0e0 ; :n2 2.0e0 ; :z2 3.0e0 .
+:DepthMeasure a :Measure ; SAYS ; FROM ; :measureName "depth_m" ; :measureOf "opening" ;
+  :primitive "concavity" .
 :Small a :Scale ; SAYS ; FROM ; :extentMin 0.0e0 ; :extentMax 3.5e-1 .
 :Large a :Scale ; SAYS ; FROM ; :extentMin 3.5e-1 .
 :RoundShape a :Shape ; SAYS ; FROM .
