@@ -57,10 +57,12 @@ class Top:
       them end on it. A lid ends them all; of a hollow, it is what noise lifts to the rim.
     - `sight_m`: how far below the rim a sight line that comes in over the near side of a hollow
       would end, and `band_m`: how far noise may put a point of the rim below it.
+    - `area_m2`: of the hull of what lies at its height.
     - `opening`: None where nothing lower can be made out above the noise.
     """
 
     height_m: float
+    area_m2: float
     n_through: int
     lid_share: float
     sight_m: float
@@ -105,7 +107,9 @@ def look_at_top(
     opening = None
     if len(seen[0]) >= min_inside:
         opening = _opening(points, hull, rim_xy, camera_xyz, rim, *seen)
-    return Top(rim, n_through, lid_share, sight, float(np.median(bands)), opening)
+    return Top(
+        rim, cv2.contourArea(hull), n_through, lid_share, sight, float(np.median(bands)), opening
+    )
 
 
 def _sight(

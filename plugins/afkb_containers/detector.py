@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from afkb.flow import Detection, View
-from afkb_containers.judge import LEAST_CLAIM, container_detection, judge, look_at
+from afkb_containers.describe import container_detection
+from afkb_containers.judge import LEAST_CLAIM, judge, look_at
 from afkb_containers.noise import noise_scale
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import ramp
@@ -50,11 +51,11 @@ class ContainerDetector:
         self, index: int, body: Body, thing: Detection, view: View, noise_scale: float
     ) -> Detection | None:
         s = self.settings
-        length, attached = thing.measures["length"], thing.measures["attached"]
-        size = membership(length, s.sides_m(body.stand)) * (1 - ramp(attached, ATTACHED))
+        sides, attached = _sides(thing), thing.measures["attached"]
+        size = membership(sides[0], s.sides_m(body.stand)) * (1 - ramp(attached, ATTACHED))
         if size <= 0:
             return None
-        looks = look_at(body, length, view, noise_scale, s)
+        looks = look_at(body, sides, view, noise_scale, s)
         if body.stand is not Stand.ON_FLOOR and looks.height_m > s.tallest_m - 0.02:
             return None
         part = ramp(attached, ATTACHED_CLOSED) if body.stand is Stand.ON_SUPPORT else 0.0
@@ -62,3 +63,8 @@ class ContainerDetector:
         if verdict.contains < LEAST_CLAIM:
             return None
         return container_detection(body, index, verdict, looks, self.name)
+
+
+def _sides(thing: Detection) -> tuple[float, float]:
+    """Sides of a thing seen from above, the longer first, m."""
+    return thing.measures["length"], thing.measures["width"]

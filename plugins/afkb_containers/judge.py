@@ -1,27 +1,22 @@
-"""Whether a thing is a container, how surely, and the `Detection` that says so."""
+"""Whether a thing is a container, and how surely."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-from afkb.flow import Detection, OrientedBox, View
+from afkb.flow import View
 from afkb_containers.noise import Noise, noise_of
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.silhouette import Silhouette, silhouette_of
 from afkb_containers.solid import compact, convex, ramp, whole
 from afkb_containers.spread import Spread, spread_of
 from afkb_mapping.bodies import Body, Stand
-from afkb_mapping.from_above import box_around, on_grid
 from afkb_mapping.openings import Opening, Top, look_at_top
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.trapezoids import membership
 
 LEAST_CLAIM = 0.1
-LITRES_PER_M3 = 1000.0
 EDGE_SHARE = 1 / 525
 """Width of the mixed edge of a body, as a share of the focal length: a pixel of a Kinect's."""
 CUT = 0.5
@@ -29,6 +24,8 @@ CUT = 0.5
 SOLID = {Stand.ON_SUPPORT: 0.85, Stand.HIDDEN: 0.72, Stand.ON_FLOOR: 0.0}
 """How often a compact, upright body holds something. On the floor such bodies are stools and
 cabinets as often as boxes, so that only an opening counts there."""
+FLAT = (0.25, 0.50)
+"""Share of what is seen of a low body from above that is its top: cushions have but a summit."""
 ROUGH = (1.5, 2.2)
 """Roughness of a body, see `Noise`: above the second it is a rack or a plant."""
 CLOSED_UNSEEN = 0.8
@@ -61,9 +58,13 @@ class Looks:
 
 
 def look_at(
-    body: Body, length_m: float, view: View, noise_scale: float, settings: ContainerSettings
+    body: Body,
+    sides_m: tuple[float, float],
+    view: View,
+    noise_scale: float,
+    settings: ContainerSettings,
 ) -> Looks:
-    """Measure a body of a length, seen from above, in a view of such noise."""
+    """Measure a body of such sides, seen from above, the longer first, in a view of such noise."""
     assert view.depth_m is not None and view.camera is not None
     camera_xyz = view.T_map_camera[:3, 3]
     height = max(percentile(body.points[:, 2], 98.0) - body.base_m, 1e-3)
@@ -71,9 +72,11 @@ def look_at(
     edge = max(1, round(EDGE_SHARE * view.camera.fx))
     spread = spread_of(body, camera_xyz, noise.sigma_m, edge)
     top = look_at_top(body, camera_xyz, sigma_m=noise.sigma_m)
-    fits = SOLID[body.stand] * compact(height, length_m, spread, settings)
-    fits *= membership(length_m, settings.closed_sides_m(body.stand))
+    fits = SOLID[body.stand] * compact(height, sides_m[0], spread, settings)
+    fits *= membership(sides_m[0], settings.closed_sides_m(body.stand))
     fits *= 1 - ramp(noise.roughness, ROUGH)
+    if spread.lies and top is not None:
+        fits *= ramp(top.area_m2 / max(math.prod(sides_m), 1e-6), FLAT)
     outline = None
     if fits > 0 or (top is not None and top.opening is not None):
         outline = silhouette_of(body, view.depth_m, view.camera.fx, noise.sigma_m)
@@ -126,68 +129,3 @@ def _open(stand: Stand, opening: Opening | None, settings: ContainerSettings) ->
     around = ramp(opening.rim_share, RIM_SHARE)
     seen = min(1.0, opening.inside_share / INSIDE_SHARE)
     return deep * (0.3 + 0.7 * around) * (0.3 + 0.7 * seen)
-
-
-def container_detection(
-    body: Body, about: int, verdict: Verdict, looks: Looks, detector: str
-) -> Detection:
-    """The body at index `about`, from its base up to its rim or top; its centre is that box's."""
-    base_m = body.base_m
-    rim = looks.opening.rim_height_m if looks.opening else base_m + looks.height_m
-    box = box_around(on_grid(body.points, 0.005), rim, 0.0, rim - base_m)
-    affordances = {"ContainAbility": verdict.contains}
-    if verdict.closed_p >= LEAST_CLAIM:
-        affordances["IntrinsicContainAbility"] = verdict.closed_p
-    return Detection(
-        detector=detector,
-        affordances=affordances,
-        box=box,
-        position_xyz=np.array(box.center_xyz),
-        covariance_xyz=_covariance(looks.noise.sigma_m),
-        footprint_xy=on_grid(body.points, 0.02),
-        n_pixels=len(body.u),
-        range_m=percentile(body.depth_m, 1.0),
-        image_box=body.image_box,
-        cut_by_image=body.cut_by_image,
-        measures=_measures(body, rim, looks) | {"volume": _litres(looks.opening, box)},
-        about=about,
-    )
-
-
-def _covariance(noise_m: float) -> NDArray[np.float64]:
-    spread = noise_m**2 + 1e-4
-    return np.diag([spread, spread, 0.25 * spread])
-
-
-def _litres(opening: Opening | None, box: OrientedBox) -> float:
-    """What it holds at least, as deep as it is seen; of a closed one, the box around it."""
-    if opening is not None:
-        return LITRES_PER_M3 * opening.width_m**2 * opening.depth_m
-    return LITRES_PER_M3 * math.prod(box.size_xyz)
-
-
-def _measures(body: Body, rim_m: float, looks: Looks) -> dict[str, float]:
-    """Heights, and what spoke for and against; no `support_height` where that isn't seen."""
-    measures = {
-        "rim_height": rim_m,
-        "height": rim_m - body.base_m,
-        "thickness": looks.spread.thickness_m,
-        "solidity": looks.outline.solidity if looks.outline else 0.0,
-        "noise": looks.noise.sigma_m,
-        "roughness": looks.noise.roughness,
-    }
-    if body.support_height_m is not None:
-        measures["support_height"] = body.support_height_m
-    if looks.top is not None:
-        measures |= {"lid_share": looks.top.lid_share, "sight": looks.top.sight_m}
-    opening = looks.opening
-    if opening is not None:
-        measures |= {
-            "depth": opening.depth_m,
-            "opening_width": opening.width_m,
-            "rim_share": opening.rim_share,
-            "sight_share": opening.sight_share,
-            "inside_share": opening.inside_share,
-            "n_inside": float(opening.n_inside),
-        }
-    return measures

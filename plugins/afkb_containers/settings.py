@@ -33,7 +33,7 @@ class ContainerSettings:
     size_m: Limits = (0.035, 0.05, 0.35, 0.60)
     depth_over_opening: Limits = (0.10, 0.25, 10.0, 20.0)
     max_extent_m: Limits = (0.02, 0.05, 0.6, 1.0)
-    closed_size_m: Limits = (-math.inf, 0.0, 0.30, 0.45)
+    closed_size_m: Limits = (-math.inf, 0.0, 0.30, 0.40)
     hidden_size_m: Limits = (-math.inf, 0.0, 0.20, 0.35)
     bin_size_m: Limits = (0.12, 0.18, 0.65, 0.85)
     bin_depth_m: Limits = (0.05, 0.10, math.inf, math.inf)

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, OrientedBox, View
-from afkb_containers.judge import LEAST_CLAIM, LITRES_PER_M3
+from afkb_containers.describe import LITRES_PER_M3
+from afkb_containers.judge import LEAST_CLAIM
 from afkb_containers.rims import CELL_M, Rim, rims_among
 from afkb_containers.ring import RIM_CELLS, ring_around
 from afkb_containers.settings import ContainerSettings
