@@ -19,7 +19,7 @@ from afkb_things.scene import Scene
 from afkb_things.surroundings import mark
 from afkb_things.valleys import valleys
 
-MOST_PATCHES = 150
+MOST_PATCHES = 60
 """More patches in one pool are noise that no edge can be told from."""
 
 
