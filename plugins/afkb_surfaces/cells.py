@@ -65,7 +65,8 @@ class Cells:
 
         Every `thin`-th row and column is looked at: a cell is that many times larger.
         """
-        coarse = np.ascontiguousarray(depth_m[::thin, ::thin], dtype=np.float32)
+        height, width = (n // thin * thin for n in depth_m.shape)
+        coarse = np.ascontiguousarray(depth_m[:height:thin, :width:thin], dtype=np.float32)
         moments = cell_moments(coarse)
         fits = window_fits(moments)
         noise = noise_of(fits)

@@ -9,6 +9,7 @@ import pytest
 
 from afkb.flow import Detection, PinholeCamera, View
 from afkb_surfaces.detector import SurfaceDetector
+from afkb_surfaces.settings import SurfaceSettings
 from depth_samples import CAMERA, FLOOR, Box, table, view_of
 
 SMALL = PinholeCamera(320, 240, 262.5, 262.5, 159.5, 119.5)
@@ -45,6 +46,22 @@ def test_the_table_is_found_and_nothing_else(hardship: str) -> None:
     assert found.box.size_xyz[:2] == pytest.approx((1.2, 0.8), abs=0.09)
     assert found.pixels is not None and view.depth_m is not None
     assert (view.depth_m.ravel()[found.pixels] > 0).all()
+
+
+@pytest.mark.parametrize("borders", [True, False])
+@pytest.mark.parametrize("size", [(1, 1), (7, 5), (639, 479), (333, 211)])
+def test_an_image_of_any_size_is_looked_at_within_its_bounds(
+    size: tuple[int, int], borders: bool
+) -> None:
+    width, height = size
+    fine = PinholeCamera(width, height, 900.0, 900.0, width / 2, height / 2)
+    view = view_of(SCENE, rng=np.random.default_rng(2), camera=fine)
+    assert view.depth_m is not None
+    for d in SurfaceDetector(replace(SurfaceSettings(), borders=borders)).detect(view):
+        if d.pixels is not None:
+            assert d.pixels.min() >= 0 and d.pixels.max() < width * height
+        assert d.image_box is not None
+        assert d.image_box[2] <= width and d.image_box[3] <= height
 
 
 @pytest.mark.parametrize("noise", [1.0, 3.0])
