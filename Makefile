@@ -29,6 +29,8 @@ pictures: $(VENV)/.default  ## make the pictures in the documents again
 	$(BIN)/afkb map world:paper_home --out demo-map-early --stop 6
 	$(BIN)/python scripts/picture.py demo-map docs/demo-map.svg edges ids
 	$(BIN)/python scripts/picture.py demo-map-early docs/early-map.svg edges ids
+	$(BIN)/afkb detect world:paper_home --frame 51 --pictures demo-map-early
+	cp demo-map-early/frame-000051.png docs/detected.png
 
 pins: $(VENV)/.dev  ## write what is installed as the versions to test with
 	scripts/pin.sh $(BIN)/python

@@ -17,6 +17,8 @@ NEAR_M, FAR_M = 0.4, 5.0
 SURE = 0.5
 """Features below this probability are not written beside a thing."""
 TINT = 0.45
+NAMED, MOST_NAMES = "Ability", 2
+"""Grasps are left to the table: there are too many to be read in a picture."""
 SUPPORT, HOLLOW, UPRIGHT, BODY, OTHER = (
     (60, 160, 60),
     (40, 60, 220),
@@ -79,7 +81,8 @@ def _name(picture: Image, detection: Detection, color: tuple[int, int, int], sur
         return
     u0, v0, _, _ = detection.image_box
     named = sorted(detection.affordances.items(), key=lambda pair: (-pair[1], pair[0]))
-    words = [f"{name.removesuffix('Ability')} {p:.2f}" for name, p in named[:3] if p >= sure]
+    named = [(name, p) for name, p in named if p >= sure and name.endswith(NAMED)]
+    words = [f"{name.removesuffix(NAMED)} {p:.2f}" for name, p in named[:MOST_NAMES]]
     width = picture.shape[1]
     scale = max(0.35, width / 1600)
     at = (min(u0 + 2, width - 60), max(v0 - 3, 10))
