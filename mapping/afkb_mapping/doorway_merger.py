@@ -30,6 +30,8 @@ LOW_JAMB = 0.6
 """P(doorway | one of its jambs is low): a cabinet that stands before the wall's end."""
 OBSTRUCTED = (0.1, 0.4)
 """Share of the line between the jambs, on which something stands: a door leaf, or a shelf."""
+KNEE_JAMB, MOSTLY = 0.2, 0.5
+"""The same of what is mostly knee-high, as a bed or a seat is."""
 FAINT = 0.05
 """Below this no grid makes it likely."""
 REPEAT = 0.4
@@ -153,8 +155,7 @@ class DoorwayMerger:
         views = len(gap.eyes)
         p = max(gap.plan) * (1 - REPEAT**views)
         for jamb in jambs:
-            tall = self._upright.tall(jamb[None], JAMB_REACH_M)
-            p *= UNKNOWN_HEIGHT if math.isnan(tall) else _ramp(tall, *TALL_SHARE, LOW_JAMB)
+            p *= self._is_jamb(jamb[None])
         inner = np.arange(JAMB_REACH_M, width - JAMB_REACH_M, ACROSS_STEP_M)
         if len(inner):
             stands = self._upright.stands_on(jambs[0] + np.outer(inner / width, along))
@@ -164,6 +165,14 @@ class DoorwayMerger:
         lintel = float(np.median(gap.lintels)) if gap.lintels else math.nan
         yaw = math.atan2(-along[0], along[1])
         return SeenDoorway(float(x), float(y), yaw, width, p, views, lintel)
+
+    def _is_jamb(self, jamb_xy: Array) -> float:
+        """Probability that what stands at a point (1, 2), m, ends or hides the end of a wall."""
+        tall = self._upright.tall(jamb_xy, JAMB_REACH_M)
+        if math.isnan(tall):
+            return UNKNOWN_HEIGHT
+        knee = self._upright.knee_high(jamb_xy, JAMB_REACH_M)
+        return _ramp(tall, *TALL_SHARE, KNEE_JAMB if knee > MOSTLY else LOW_JAMB)
 
 
 def _ramp(value: float, low: float, high: float, least: float = 0.0) -> float:

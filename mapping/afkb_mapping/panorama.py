@@ -25,6 +25,8 @@ STEP_PX = 130.0
 """Focal length (px) over this: every so many pixels are read, 0.44 degrees apart."""
 STEP_OVER_M = 0.10
 """What is lower than this a robot drives over: thresholds, carpets, the floor's own noise."""
+WAIST_M = 0.6
+"""Seats, beds and low tables end below: they stand before no wall's end, as cabinets do."""
 TALL_M = 1.1
 """What is higher than this is a wall or as tall as a person: counters, beds, chair backs end below.
 """
@@ -40,7 +42,7 @@ class Panorama:
 
     - `bearings` (N,) rad, map frame, ascending: middle of each direction.
     - `low_m`, `tall_m`: (N,) to the nearest thing between `STEP_OVER_M` and `TALL_M`, and between
-      that and `HEAD_M`.
+      that and `HEAD_M`; `waist_m`: of the low ones, to what reaches over `WAIST_M`.
     - `floor_m`: (N,) to the farthest floor that was seen.
     - `obstacle_m`: (N,) to the nearest thing in the way, of any height.
     - `free_m`: (N,) how far the way is seen to be free; 0 where nothing was seen.
@@ -49,6 +51,7 @@ class Panorama:
     center_xy: Array
     bearings: Array
     low_m: Array
+    waist_m: Array
     tall_m: Array
     floor_m: Array
     obstacle_m: Array
@@ -73,21 +76,22 @@ def panorama_of(view: View) -> Panorama | None:
     ranges[~np.isfinite(ranges)] = np.nan
     turns: Array = (np.arange(BEARINGS, dtype=np.float64) + 0.5) / BEARINGS
     bearings = turns * (2 * math.pi) - math.pi
-    low, tall, floor = ranges[1], ranges[3], ranges[4]
+    waist, tall, floor = ranges[3], ranges[5], ranges[6]
+    low = np.fmin(ranges[1], waist)
     obstacle = np.fmin(low, tall)
     free = np.nan_to_num(np.where(np.isnan(obstacle), floor, obstacle))
-    return Panorama(T[:2, 3].copy(), bearings, low, tall, floor, obstacle, free)
+    return Panorama(T[:2, 3].copy(), bearings, low, waist, tall, floor, obstacle, free)
 
 
 @kernel
 def _ranges(depth_m: NDArray[np.float32], intrinsics: Array, T: Array, step: int) -> Array:
-    """(5, BEARINGS) m: nearest and second nearest low thing, the same of tall ones, farthest floor.
+    """(7, BEARINGS) m: nearest and second nearest thing of each height, then the farthest floor.
 
     The second nearest is what counts: single pixels at edges float in the air.
     """
     fx, fy, cx, cy = intrinsics
-    found = np.full((5, BEARINGS), np.inf)
-    found[4] = -np.inf
+    found = np.full((7, BEARINGS), np.inf)
+    found[6] = -np.inf
     for v in range(0, depth_m.shape[0], step):
         yc = (v - cy) / fy
         for u in range(0, depth_m.shape[1], step):
@@ -106,9 +110,9 @@ def _ranges(depth_m: NDArray[np.float32], intrinsics: Array, T: Array, step: int
             slack = max(STEP_OVER_M, NOISE_SIGMAS * depth_sigma(d))
             if height < slack:
                 if height > -slack:
-                    found[4, k] = max(found[4, k], r)
+                    found[6, k] = max(found[6, k], r)
                 continue
-            row = 0 if height < TALL_M else 2
+            row = 0 if height < WAIST_M else 2 if height < TALL_M else 4
             if r < found[row, k]:
                 found[row + 1, k] = found[row, k]
                 found[row, k] = r

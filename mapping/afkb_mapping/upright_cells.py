@@ -35,6 +35,7 @@ class UprightCells:
     def __init__(self) -> None:
         self._tall: defaultdict[Cell, int] = defaultdict(int)
         self._low: defaultdict[Cell, int] = defaultdict(int)
+        self._knee: defaultdict[Cell, int] = defaultdict(int)
 
     def add(self, panorama: Panorama) -> None:
         """Take in what one view shows."""
@@ -44,6 +45,9 @@ class UprightCells:
         over &= ~(panorama.tall_m < panorama.low_m + OVER_M)
         for cell in _cells(panorama, panorama.low_m, over):
             self._low[cell] += 1
+        over &= ~(panorama.waist_m < panorama.low_m + OVER_M)
+        for cell in _cells(panorama, panorama.low_m, over):
+            self._knee[cell] += 1
 
     def tall(self, points_xy: Array, reach_m: float) -> float:
         """Share of what stands within reach of points (N, 2), m, that is tall; NaN without any."""
@@ -51,6 +55,12 @@ class UprightCells:
         tall = sum(self._tall.get(c, 0) for c in cells)
         low = sum(self._low.get(c, 0) for c in cells)
         return tall / (tall + low) if tall + low >= LEAST_VIEWS else float("nan")
+
+    def knee_high(self, points_xy: Array, reach_m: float) -> float:
+        """Share of the low things within reach of points (N, 2), m, that end below the waist."""
+        cells = _around(points_xy, reach_m)
+        low = sum(self._low.get(c, 0) for c in cells)
+        return sum(self._knee.get(c, 0) for c in cells) / low if low else 0.0
 
     def stands_on(self, points_xy: Array) -> float:
         """Share of points (N, 2), m, at which something was seen to stand, of any height."""

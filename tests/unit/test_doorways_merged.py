@@ -73,22 +73,29 @@ def test_the_way_round_tells_a_door_from_furniture():
     assert room_to_room(jambs, free, grid_of(free)) < 0.3
 
 
-def seen_at(low_m, tall_m):
+def seen_at(low_m, tall_m, waist_m):
     """A panorama in which something low and something tall stand, in all directions."""
     bearings = (np.arange(720) + 0.5) * (np.pi / 360) - np.pi
-    low, tall = np.full(720, low_m), np.full(720, tall_m)
+    low, waist, tall = (np.full(720, r) for r in (low_m, waist_m, tall_m))
     nothing = np.full(720, np.nan)
-    return Panorama(np.zeros(2), bearings, low, tall, nothing, np.fmin(low, tall), nothing)
+    return Panorama(np.zeros(2), bearings, low, waist, tall, nothing, np.fmin(low, tall), nothing)
 
 
 def test_what_one_looks_over_is_low():
     cells = UprightCells()
     for _ in range(2):
-        cells.add(seen_at(1.0, 3.0))
+        cells.add(seen_at(1.0, 3.0, waist_m=1.0))
     assert cells.tall(np.array([[1.0, 0.0]]), 0.1) == 0
     assert cells.tall(np.array([[3.0, 0.0]]), 0.1) == 1
     assert np.isnan(cells.tall(np.array([[2.0, 0.0]]), 0.1))
     assert cells.stands_on(np.array([[1.0, 0.0], [2.0, 0.0]])) == 0.5
+
+
+@pytest.mark.parametrize(("waist_m", "knee"), [(1.0, 0), (2.5, 1)])
+def test_beds_are_told_from_cabinets(waist_m, knee):
+    cells = UprightCells()
+    cells.add(seen_at(1.0, 3.0, waist_m))
+    assert cells.knee_high(np.array([[1.0, 0.0]]), 0.1) == knee
 
 
 def test_united_with_those_of_the_grid_each_place_is_one():
