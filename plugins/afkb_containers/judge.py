@@ -24,6 +24,9 @@ CUT = 0.5
 SOLID = {Stand.ON_SUPPORT: 0.85, Stand.HIDDEN: 0.72, Stand.ON_FLOOR: 0.0}
 """How often a compact, upright body holds something. On the floor such bodies are stools and
 cabinets as often as boxes, so that only an opening counts there."""
+FLOATS = (0.20, 0.40)
+"""How far above its support its lowest part is seen, as a share of its height: what hangs there is
+a lampshade or a shelf."""
 FLAT = (0.25, 0.50)
 """Share of what is seen of a low body from above that is its top: cushions have but a summit."""
 ROUGH = (1.5, 2.2)
@@ -75,6 +78,8 @@ def look_at(
     fits = SOLID[body.stand] * compact(height, sides_m[0], spread, settings)
     fits *= membership(sides_m[0], settings.closed_sides_m(body.stand))
     fits *= 1 - ramp(noise.roughness, ROUGH)
+    if body.support_height_m is not None:
+        fits *= 1 - ramp((body.lowest_m - body.base_m) / height, FLOATS)
     if spread.lies and top is not None:
         fits *= ramp(top.area_m2 / max(math.prod(sides_m), 1e-6), FLAT)
     outline = None
