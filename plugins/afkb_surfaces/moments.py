@@ -21,8 +21,7 @@ N, SU, SV, SUU, SUV, SVV, SW, SUW, SVW, SWW = range(10)
 ZERO, ONE = np.float32(0.0), np.float32(1.0)
 INNER, OUTER = np.float32(0.5), np.float32(1.5)
 """Distance of a cell's inner and outer pixels from its middle, px."""
-FULL = np.float32(CELL * CELL)
-FULL_SUU = np.float32(CELL * CELL * 1.25)
+INNER_SQUARED, OUTER_SQUARED = np.float32(0.25), np.float32(2.25)
 
 
 @kernel
@@ -34,30 +33,35 @@ def cell_moments(depth_m: NDArray[np.float32]) -> NDArray[np.float32]:
     rows, cols = depth_m.shape[0] // CELL, depth_m.shape[1] // CELL
     moments = np.zeros((rows + 2, 10, cols + 2), np.float32)
     w = np.empty((CELL, CELL * cols), np.float32)
-    sums = np.empty((4, CELL * cols), np.float32)
+    seen = np.empty((CELL, CELL * cols), np.float32)
+    sums = np.empty((3, CELL * cols), np.float32)
     for r in range(rows):
         for i in range(CELL):
-            _invert(depth_m[r * CELL + i], w[i])
-        _add_down(w[0], w[1], w[2], w[3], sums)
+            _invert(depth_m[r * CELL + i], w[i], seen[i])
         m = moments[r + 1]
+        _add_down(seen[0], seen[1], seen[2], seen[3], sums)
         _add_across(sums[0], m[N])
-        _add_across(sums[1], m[SW])
-        _lean_across(sums[1], m[SUW])
-        _add_across(sums[2], m[SVW])
-        _add_across(sums[3], m[SWW])
-        for c in range(cols):
-            if m[N, c + 1] == FULL:
-                m[SUU, c + 1] = m[SVV, c + 1] = FULL_SUU
-            elif m[N, c + 1] > ZERO:
-                _add_places(w, c, m)
+        _lean_across(sums[0], m[SU])
+        _spread_across(sums[0], m[SUU])
+        _add_across(sums[1], m[SV])
+        _lean_across(sums[1], m[SUV])
+        _add_across(sums[2], m[SVV])
+        _add_down(w[0], w[1], w[2], w[3], sums)
+        _add_across(sums[0], m[SW])
+        _lean_across(sums[0], m[SUW])
+        _add_across(sums[1], m[SVW])
+        _add_squares_down(w[0], w[1], w[2], w[3], sums[0])
+        _add_across(sums[0], m[SWW])
     return moments
 
 
 @kernel
-def _invert(z: NDArray[np.float32], w: NDArray[np.float32]) -> None:
-    """1/z of a row of pixels, 0 where there is no depth."""
+def _invert(z: NDArray[np.float32], w: NDArray[np.float32], seen: NDArray[np.float32]) -> None:
+    """1/z of a row of pixels and 1, or 0 and 0 where there is no depth."""
     for u in range(len(w)):
         w[u] = ONE / z[u] if z[u] > ZERO else ZERO
+    for u in range(len(w)):
+        seen[u] = ONE if w[u] > ZERO else ZERO
 
 
 @kernel
@@ -68,17 +72,27 @@ def _add_down(
     d: NDArray[np.float32],
     sums: NDArray[np.float32],
 ) -> None:
-    """Of four rows of w, column by column: how many, sum, sum times v, sum of squares."""
-    count, total, lean, squares = sums[0], sums[1], sums[2], sums[3]
-    for u in range(len(count)):
-        above = (ONE if a[u] > ZERO else ZERO) + (ONE if b[u] > ZERO else ZERO)
-        count[u] = above + (ONE if c[u] > ZERO else ZERO) + (ONE if d[u] > ZERO else ZERO)
-    for u in range(len(count)):
+    """Of four rows, column by column: sum, sum times v, sum times v squared."""
+    total, lean, spread = sums[0], sums[1], sums[2]
+    for u in range(len(total)):
         total[u] = a[u] + b[u] + c[u] + d[u]
-    for u in range(len(count)):
+    for u in range(len(total)):
         lean[u] = OUTER * (d[u] - a[u]) + INNER * (c[u] - b[u])
-    for u in range(len(count)):
-        squares[u] = a[u] * a[u] + b[u] * b[u] + c[u] * c[u] + d[u] * d[u]
+    for u in range(len(total)):
+        spread[u] = OUTER_SQUARED * (d[u] + a[u]) + INNER_SQUARED * (c[u] + b[u])
+
+
+@kernel
+def _add_squares_down(
+    a: NDArray[np.float32],
+    b: NDArray[np.float32],
+    c: NDArray[np.float32],
+    d: NDArray[np.float32],
+    out: NDArray[np.float32],
+) -> None:
+    """Of four rows, column by column, the sum of squares."""
+    for u in range(len(out)):
+        out[u] = a[u] * a[u] + b[u] * b[u] + c[u] * c[u] + d[u] * d[u]
 
 
 @kernel
@@ -96,18 +110,8 @@ def _lean_across(x: NDArray[np.float32], out: NDArray[np.float32]) -> None:
 
 
 @kernel
-def _add_places(w: NDArray[np.float32], c: int, m: NDArray[np.float32]) -> None:
-    """Moments of u and v alone, of a cell in which some pixels have no depth."""
-    su = sv = suu = suv = svv = ZERO
-    for i in range(CELL):
-        v = np.float32(i) - OUTER
-        for j in range(CELL):
-            if w[i, c * CELL + j] > ZERO:
-                u = np.float32(j) - OUTER
-                su += u
-                sv += v
-                suu += u * u
-                suv += u * v
-                svv += v * v
-    k = c + 1
-    m[SU, k], m[SV, k], m[SUU, k], m[SUV, k], m[SVV, k] = su, sv, suu, suv, svv
+def _spread_across(x: NDArray[np.float32], out: NDArray[np.float32]) -> None:
+    """Sum of each cell's four columns times u squared."""
+    for c in range(len(x) // 4):
+        outer, inner = x[4 * c + 3] + x[4 * c], x[4 * c + 2] + x[4 * c + 1]
+        out[c + 1] = OUTER_SQUARED * outer + INNER_SQUARED * inner
