@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import Detection, OrientedBox
 from afkb_containers.judge import LEAST_CLAIM, Looks, Verdict
+from afkb_containers.spread import UNKNOWN
 from afkb_mapping.bodies import Body
 from afkb_mapping.from_above import box_around, on_grid
 from afkb_mapping.openings import Opening
@@ -60,11 +61,12 @@ def _measures(body: Body, rim_m: float, looks: Looks) -> dict[str, float]:
     measures = {
         "rim_height": rim_m,
         "height": rim_m - body.base_m,
-        "thickness": looks.spread.thickness_m,
         "solidity": looks.outline.solidity if looks.outline else 0.0,
         "noise": looks.noise.sigma_m,
         "roughness": looks.noise.roughness,
     }
+    if looks.spread is not UNKNOWN:
+        measures["thickness"] = looks.spread.thickness_m
     if body.support_height_m is not None:
         measures["support_height"] = body.support_height_m
     if looks.top is not None:

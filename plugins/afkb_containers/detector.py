@@ -53,11 +53,10 @@ class ContainerDetector:
         s = self.settings
         sides, attached = _sides(thing), thing.measures["attached"]
         size = membership(sides[0], s.sides_m(body.stand)) * (1 - ramp(attached, ATTACHED))
-        if size <= 0:
+        low = body.stand is Stand.ON_FLOOR or thing.measures["height"] <= s.tallest_m - 0.02
+        if size <= 0 or not low:
             return None
         looks = look_at(body, sides, view, noise_scale, s)
-        if body.stand is not Stand.ON_FLOOR and looks.height_m > s.tallest_m - 0.02:
-            return None
         part = ramp(attached, ATTACHED_CLOSED) if body.stand is Stand.ON_SUPPORT else 0.0
         verdict = judge(body, size, 1 - part, looks, s)
         if verdict.contains < LEAST_CLAIM:

@@ -10,7 +10,7 @@ from afkb_containers.noise import Noise, noise_of
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.silhouette import Silhouette, silhouette_of
 from afkb_containers.solid import compact, convex, ramp, whole
-from afkb_containers.spread import Spread, spread_of
+from afkb_containers.spread import UNKNOWN, Spread, spread_of
 from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.openings import Opening, Top, look_at_top
 from afkb_mapping.order_statistics import percentile
@@ -73,19 +73,24 @@ def look_at(
     height = max(percentile(body.points[:, 2], 98.0) - body.base_m, 1e-3)
     noise = noise_of(body, view.depth_m, noise_scale)
     edge = max(1, round(EDGE_SHARE * view.camera.fx))
-    spread = spread_of(body, camera_xyz, noise.sigma_m, edge)
+    spread = spread_of(body, camera_xyz, noise.sigma_m, edge) if SOLID[body.stand] else UNKNOWN
     top = look_at_top(body, camera_xyz, sigma_m=noise.sigma_m)
     fits = SOLID[body.stand] * compact(height, sides_m[0], spread, settings)
     fits *= membership(sides_m[0], settings.closed_sides_m(body.stand))
-    fits *= 1 - ramp(noise.roughness, ROUGH)
-    if body.support_height_m is not None:
-        fits *= 1 - ramp((body.lowest_m - body.base_m) / height, FLOATS)
+    fits *= (1 - ramp(noise.roughness, ROUGH)) * _stands(body, height)
     if spread.lies and top is not None:
         fits *= ramp(top.area_m2 / max(math.prod(sides_m), 1e-6), FLAT)
     outline = None
     if fits > 0 or (top is not None and top.opening is not None):
         outline = silhouette_of(body, view.depth_m, view.camera.fx, noise.sigma_m)
     return Looks(height, noise, spread, top, fits, outline)
+
+
+def _stands(body: Body, height_m: float) -> float:
+    """How much a body stands on its support, as far as that is seen, rather than hangs above it."""
+    if body.support_height_m is None:
+        return 1.0
+    return 1 - ramp((body.lowest_m - body.base_m) / height_m, FLOATS)
 
 
 @dataclass(frozen=True, slots=True)
