@@ -12,7 +12,6 @@ from afkb.inference.objects import ObjectNetwork
 from afkb.inference.relations import RelationshipNetwork
 from afkb.inference.rooms import RoomNetwork
 from afkb.knowledge import SOMETHING_ELSE, AfNet, EvidenceClass
-from afkb.ontology.names import BY_MEASURES
 
 SIZE_AND_PLACE = ("dimensions", "clearance", "proximity", "orientation")
 """Primitives of measures that the network observes by itself, or that tell of no kind of thing."""
@@ -61,7 +60,7 @@ class Network:
         return frozenset(
             feature.name
             for feature in self.knowledge_base.features.values()
-            if feature.grounded_by == (BY_MEASURES,)
+            if feature.by_measures_alone
             and feature.parameters
             and all(
                 name in measures and measures[name].primitive in SIZE_AND_PLACE

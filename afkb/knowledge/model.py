@@ -74,6 +74,11 @@ class Feature(Statement):
     grounding_reason: str = ""
 
     @property
+    def by_measures_alone(self) -> bool:
+        """Whether nothing but measures tells of it: no detector of its own, no prior."""
+        return self.grounded_by == (BY_MEASURES,)
+
+    @property
     def is_weak(self) -> bool:
         """Whether what grounds it is a hint and no more: never evidence against anything."""
         return bool(self.grounded_by) and not {BY_DETECTOR, BY_MEASURES} & set(self.grounded_by)
