@@ -30,7 +30,8 @@ FRONT = math.cos(math.radians(45))
 
 def add_clearances(things: Sequence[Seen], measures: list[dict[str, float]], view: View) -> None:
     """Add, to the measures of each surface and body, what is free above it and round it."""
-    standing = [i for i, thing in enumerate(things) if {BODY, SURFACE} & set(thing.kinds)]
+    solid = [i for i, thing in enumerate(things) if {BODY, SURFACE} & set(thing.kinds)]
+    standing = [i for i in solid if measures[i]]
     if view.depth_m is None or not standing:
         return
     T = view.T_map_camera

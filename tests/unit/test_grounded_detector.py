@@ -178,5 +178,8 @@ def test_stripes_have_one_direction_and_a_mesh_two() -> None:
     assert texture_measures(own, None) == {}
 
 
-def test_no_depth_or_nothing_before_it_gives_nothing() -> None:
+def test_nothing_before_it_or_an_ontology_without_groundings_gives_nothing() -> None:
     assert DETECTOR.detect(sample_view(), []) == []
+    silent = GroundedDetector(BASE)
+    silent.__dict__.update(_groundings=[], _by_kind={})
+    assert silent.detect(sample_view(), [detection((0.45, 0.45, 0.02), 0.44)]) == []
