@@ -37,6 +37,8 @@ LID = (0.4, 0.8)
 """Share of sight lines that end on its top: all of an open thing go in, all of a closed one end."""
 SHALLOW = (0.15, 0.35)
 """Share of what sight lines could show of a hollow, up to which it is the dent of a lid."""
+DENT = (0.05, 0.10)
+"""Depth seen over the height of a thing: less is a dent in the top of something tall."""
 RIM_SHARE = (0.5, 0.8)
 INSIDE_SHARE = 0.15
 SIGHT_SHARE = 0.6
@@ -112,7 +114,7 @@ def judge(
     if looks.outline is None:
         return Verdict(0.0, 0.0, 0.0)
     whole_p = whole(looks.outline, looks.height_m)
-    open_p = 0.95 * size * whole_p * _open(body.stand, looks.opening, settings)
+    open_p = 0.95 * size * whole_p * _open(body.stand, looks, settings)
     solid_p = (1 - open_p) * looks.compact * size * convex(looks.outline, looks.height_m)
     solid_p *= free * (CUT if body.cut_by_image else 1.0)
     if looks.top is None or not looks.top.tells:
@@ -127,8 +129,9 @@ def _lidded(top: Top) -> float:
     return lid if top.opening is None else max(lid, 1 - ramp(top.opening.sight_share, SHALLOW))
 
 
-def _open(stand: Stand, opening: Opening | None, settings: ContainerSettings) -> float:
+def _open(stand: Stand, looks: Looks, settings: ContainerSettings) -> float:
     """How much an opening is one that holds something."""
+    opening = looks.opening
     if opening is None or opening.rim_share < RIM_SHARE[0]:
         return 0.0
     deep = membership(opening.depth_m / opening.width_m, settings.depth_over_opening)
@@ -136,6 +139,7 @@ def _open(stand: Stand, opening: Opening | None, settings: ContainerSettings) ->
         deep = max(deep, 0.9)
     if stand is Stand.ON_FLOOR:
         deep *= membership(opening.depth_m, settings.bin_depth_m)
+    deep *= ramp(opening.depth_m / looks.height_m, DENT)
     around = ramp(opening.rim_share, RIM_SHARE)
     seen = min(1.0, opening.inside_share / INSIDE_SHARE)
     return deep * (0.3 + 0.7 * around) * (0.3 + 0.7 * seen)
