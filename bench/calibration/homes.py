@@ -78,7 +78,7 @@ class HomeLabels:
         self, claim: Detection, feature: str, index: int, thing: Detection
     ) -> tuple[bool, str] | None:
         """Whether the claim is so, and of which thing."""
-        if feature in NO_LABEL or thing.measures.get("is_floor"):
+        if feature in NO_LABEL or thing.measures.get("is_floor") or self._is_grasp(feature):
             return None
         meant = thing_at(claim, self._things)
         told: bool | None
@@ -89,6 +89,10 @@ class HomeLabels:
             if told and claim.about is not None:
                 told = self._afforded_by(meant, feature)
         return None if told is None else (told, meant["name"] if meant else _place(claim))
+
+    def _is_grasp(self, feature: str) -> bool:
+        known = self._kb.features.get(feature)
+        return known is not None and known.kind == "grasp"
 
     def _is_one(self, thing: Detection, meant: dict[str, Any] | None) -> bool | None:
         """Whether a surface is one, or a body one thing; None of what is neither."""
@@ -119,7 +123,7 @@ class HomeLabels:
         """By the categories that the truth's word means, in the ontology."""
         word = word_of(thing) if thing else ""
         meant = MEANT.get(word) or ALSO_MEANT.get(word)
-        if meant is None or self._kb.features[feature].kind == "grasp":
+        if meant is None:
             return None
         if word not in self._afforded:
             kinds = kinds_of(meant, self._kb)
