@@ -90,6 +90,11 @@ class CalibratedDetector:
         """The detector's own stage."""
         return self.scorer.stage
 
+    @property
+    def by_default(self) -> bool:
+        """Whether it runs where no detector is named."""
+        return getattr(self.scorer, "by_default", True)
+
     def detect(self, view: View, earlier: Sequence[Detection]) -> list[Detection]:
         """What the detector sees, with probabilities that mean what they say."""
         return [self.calibrate(d) for d in self.scorer.detect(view, earlier)]
