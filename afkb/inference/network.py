@@ -40,17 +40,16 @@ class Network:
     def known(self, affordances: Mapping[str, float]) -> dict[str, float]:
         """Those affordances that tell what a thing is, beside its size and height.
 
-        A stranger's detector may report what the ontology doesn't have. A hint that is less
-        probable than not was made from what the thing may be, or can't be seen better: it says
-        nothing against. What size, height and clearance alone decide, as a seat, is no evidence
-        of its own beside size and height.
+        A stranger's detector may report what the ontology doesn't have. A feature that is but
+        hinted at follows from what the thing may be, or is too faint: it is no evidence of that.
+        What size, height and clearance alone decide, as a seat, is none of its own beside them.
         """
         return {
             name: p
             for name, p in affordances.items()
             if name in self.knowledge_base.features
             and name not in self._told_by_size
-            and not (p < 0.5 and self.knowledge_base.features[name].is_weak)
+            and not self.knowledge_base.features[name].is_weak
         }
 
     @cached_property

@@ -29,6 +29,9 @@ from afkb.flow import Detection, View
 from afkb.plugins.protocols import Detector
 
 RANGE_M, PIXELS, SIZE_M = 2.0, 1000.0, 0.3
+SCORE = "score"
+"""The measure that holds a detection's best score: how far it affords anything, in its detector's
+own judgement, however often such detections are right."""
 SURE = 0.995
 """Scores and probabilities stay this far from certain: no table has examples for more."""
 LEAST_RANGE_M, LEAST_SIZE_M = 0.2, 0.02
@@ -107,6 +110,7 @@ class CalibratedDetector:
                 feature: _probability(self.curves.get(feature), scored, feature)
                 for feature in scored.affordances
             },
+            measures={**scored.measures, SCORE: max(scored.affordances.values())},
         )
 
 

@@ -14,8 +14,8 @@ from afkb_mapping.standing import FOOT_HIDDEN_M, STANDS_WITHIN_M, support_of
 from afkb_mapping.tracks import ObservedTrack
 
 EXISTS_FROM = 0.5
-CONVINCING = 0.5
-"""A thing of which most of what was seen doubts that it affords anything is none: a piece of
+CONVINCING = 0.4
+"""A thing whose views, all in all, doubt more than this that it affords anything is none: a piece of
 furniture that looks like a thing from everywhere, or a false cue that a few views gave."""
 SUSTAINED = 0.8
 """A thing seen in one view only is kept if that view was this sure of it."""

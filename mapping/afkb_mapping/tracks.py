@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, NodeKind
+from afkb_mapping.calibration import SCORE
 from afkb_mapping.footprint import Footprint
 from afkb_mapping.update_rules import CERTAIN, log_odds
 from afkb_mapping.viewpoints import Viewpoints
@@ -106,7 +107,7 @@ class ObservedTrack:
         variance = max(float(detection.covariance_xyz[2, 2]), 1e-6) / detection.n_pixels
         self.top.add(float(top), variance)
         self.bottom.add(detection.measures.get("support_height", detection.box.bottom), variance)
-        strength = max(detection.affordances.values())
+        strength = _strength(detection)
         self.strength_sum += strength * detection.n_pixels
         if self.viewpoints.is_new(camera_xy, detection.position_xyz[:2]):
             self._believe(min(strength, CERTAIN))
@@ -169,6 +170,16 @@ class ObservedTrack:
         self.evidence = (self.evidence + other.evidence)[:KEPT_EVIDENCE]
         self.pixels_of_known_extent += other.pixels_of_known_extent
         self.predicted_first = self.predicted_first or other.predicted_first
+
+
+def _strength(detection: Detection) -> float:
+    """How sure a sighting is that there is something which affords something.
+
+    Neither surer than such detections are right, nor than the detector that made it holds it for:
+    strips as wide as a hand are there more often than not, and support little.
+    """
+    told = detection.parts or (detection,)
+    return max(min(max(d.affordances.values()), d.measures.get(SCORE, 1.0)) for d in told)
 
 
 def _evidence(detection: Detection, view_index: int) -> str:
