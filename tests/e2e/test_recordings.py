@@ -17,7 +17,7 @@ from afkb_mapping.run import RunResult, make_map
 from afkb_mapping.run_record import Settings
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def host() -> PluginHost:
     return PluginHost()
 
@@ -30,14 +30,14 @@ def observed(found: TopologicalMap, feature: str) -> Iterator[Entity]:
     )
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def kitchen(host, data_dir, tmp_path_factory) -> tuple[RunResult, Path]:
     out = tmp_path_factory.mktemp("redkitchen") / "map"
     settings = Settings(uri=str(data_dir / "redkitchen"), out=out, stride=8)
     return make_map(host, settings), out
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def merom(host, data_dir, tmp_path_factory) -> tuple[RunResult, dict]:
     home = data_dir / "homes" / "merom"
     out = tmp_path_factory.mktemp("merom") / "map"

@@ -20,7 +20,7 @@ BENCHES_XY = [(3.9, 3.2), (3.2, 0.7)]
 """In the world file; the map's origin is the first base pose (0.8, 1.8)."""
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def said(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
     """The folder in which the README's commands ran, and what each block of them printed."""
     folder = tmp_path_factory.mktemp("my-home")

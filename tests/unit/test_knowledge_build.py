@@ -14,8 +14,10 @@ from afkb.ontology.schema import property_of
 TABLES = Path(__file__).parents[2] / "ontology" / "tables"
 STATUS = URIRef(AFN + "status")
 
+pytestmark = pytest.mark.xdist_group("build")
 
-@pytest.fixture(scope="module")
+
+@pytest.fixture(scope="session")
 def graph() -> Graph:
     return Graph().parse(bundled_ontology(), format="xml")
 
@@ -24,7 +26,7 @@ def named(graph: Graph) -> list[URIRef]:
     return sorted({s for s in graph.subjects() if str(s).startswith(AFN)})
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("ontology")
     write_ontology(TABLES, folder / "afnet.owl", folder / "modules")
