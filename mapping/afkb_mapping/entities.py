@@ -15,8 +15,8 @@ from afkb_mapping.tracks import ObservedTrack
 
 EXISTS_FROM = 0.5
 CONVINCING = 0.4
-"""A thing whose views, all in all, doubt more than this that it affords anything is none: a piece of
-furniture that looks like a thing from everywhere, or a false cue that a few views gave."""
+"""A thing whose views, all in all, doubt more than this that it affords anything is none: furniture
+that looks like a thing from everywhere, or a false cue that a few views gave."""
 SUSTAINED = 0.8
 """A thing seen in one view only is kept if that view was this sure of it."""
 FAINT = 0.05
