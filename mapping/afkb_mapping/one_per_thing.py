@@ -16,8 +16,16 @@ def one_per_thing(detections: Sequence[Detection]) -> list[Detection]:
 
     Raises `ValueError` where one is about itself or about what comes later.
     """
+    return [_joined(told) for told in told_of_each(detections).values()]
+
+
+def told_of_each(detections: Sequence[Detection]) -> dict[int, list[Detection]]:
+    """What a view's detections say of each thing, by the index of what first told of it.
+
+    Raises `ValueError` where one is about itself or about what comes later.
+    """
     roots: list[int] = []
-    parts: dict[int, list[Detection]] = {}
+    told: dict[int, list[Detection]] = {}
     for index, detection in enumerate(detections):
         if detection.about is not None and not 0 <= detection.about < index:
             raise ValueError(
@@ -26,8 +34,8 @@ def one_per_thing(detections: Sequence[Detection]) -> list[Detection]:
             )
         root = index if detection.about is None else roots[detection.about]
         roots.append(root)
-        parts.setdefault(root, []).append(detection)
-    return [_joined(told) for told in parts.values()]
+        told.setdefault(root, []).append(detection)
+    return told
 
 
 def _joined(told: Sequence[Detection]) -> Detection:

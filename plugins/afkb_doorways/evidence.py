@@ -23,8 +23,6 @@ LEAST_DIRECTIONS = 2
 """In fewer directions nothing is said."""
 LINTEL_REACH_M = 0.25
 """A lintel lies no further from the line between the jambs: half a thick wall, and noise."""
-LINTEL_PERCENT = 5.0
-LINTEL_PIXELS = 8
 LINTEL_SHARE = 0.5
 """It spans at least this part of the gap, else it is a lamp or a sign."""
 SLICES = 16

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from afkb.flow import Detection
+from afkb_mapping.one_per_thing import told_of_each
 
 SURFACE, BODY, OPENING, UPRIGHT, GAP, PART = (
     "surface", "body", "opening", "upright", "gap", "part",
@@ -35,12 +36,7 @@ def things_of(earlier: Sequence[Detection], told_by: Mapping[str, str]) -> list[
 
     `told_by`: a feature that has a detector of its own, to the kind of thing that affords it.
     """
-    told: dict[int, list[Detection]] = {}
-    roots: list[int] = []
-    for index, detection in enumerate(earlier):
-        root = index if detection.about is None else roots[detection.about]
-        roots.append(root)
-        told.setdefault(root, []).append(detection)
+    told = told_of_each(earlier)
     things = [_thing(root, detections, told_by) for root, detections in told.items()]
     return [thing for thing in things if thing.kinds and not thing.measures.get("is_floor")]
 
