@@ -90,7 +90,7 @@ def _checked_transform(name: str, T: NDArray[np.float64]) -> None:
         raise BadFrame(f"{name}: its 3x3 part is not a rotation")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class View:
     """Everything sensed at one moment, and nothing else: the unit that flows.
 

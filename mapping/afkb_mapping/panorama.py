@@ -14,7 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import View
+from afkb_mapping.depth_points import intrinsics_of
 from afkb_mapping.kernels import kernel
+from afkb_mapping.per_view import once_per_view
 from afkb_mapping.sensor_noise import depth_sigma
 
 Array = NDArray[np.float64]
@@ -65,14 +67,13 @@ class Panorama:
         return index, np.hypot(off[:, 0], off[:, 1])
 
 
+@once_per_view
 def panorama_of(view: View) -> Panorama | None:
-    """The panorama of a placed view; None where it has no depth."""
+    """The panorama of a placed view; None where it has no depth. Detectors and mapper share it."""
     if view.depth_m is None or view.camera is None:
         return None
-    camera, T = view.camera, view.T_map_camera
-    intrinsics = np.array([camera.fx, camera.fy, camera.cx, camera.cy])
-    step = max(1, round(camera.fx / STEP_PX))
-    ranges = _ranges(view.depth_m, intrinsics, T, step)
+    T, step = view.T_map_camera, max(1, round(view.camera.fx / STEP_PX))
+    ranges = _ranges(view.depth_m, intrinsics_of(view), T, step)
     ranges[~np.isfinite(ranges)] = np.nan
     turns: Array = (np.arange(BEARINGS, dtype=np.float64) + 0.5) / BEARINGS
     bearings = turns * (2 * math.pi) - math.pi
@@ -92,21 +93,23 @@ def _ranges(depth_m: NDArray[np.float32], intrinsics: Array, T: Array, step: int
     fx, fy, cx, cy = intrinsics
     found = np.full((7, BEARINGS), np.inf)
     found[6] = -np.inf
+    per_rad = BEARINGS / (2 * math.pi)
+    ax, ay, az = T[0, 0], T[1, 0], T[2, 0]
     for v in range(0, depth_m.shape[0], step):
         yc = (v - cy) / fy
+        # Of a ray of this row: its way along each axis of the map, but for its column's part.
+        bx, by, bz = T[0, 1] * yc + T[0, 2], T[1, 1] * yc + T[1, 2], T[2, 1] * yc + T[2, 2]
         for u in range(0, depth_m.shape[1], step):
             d = float(depth_m[v, u])
             if not 0.0 < d < FARTHEST_M:
                 continue
             xc = (u - cx) / fx
-            height = d * (T[2, 0] * xc + T[2, 1] * yc + T[2, 2]) + T[2, 3]
+            height = d * (az * xc + bz) + T[2, 3]
             if height >= HEAD_M:
                 continue
-            x = d * (T[0, 0] * xc + T[0, 1] * yc + T[0, 2])
-            y = d * (T[1, 0] * xc + T[1, 1] * yc + T[1, 2])
-            r = math.sqrt(x * x + y * y)
-            turn = (math.atan2(y, x) + math.pi) / (2 * math.pi)
-            k = int(turn * BEARINGS) % BEARINGS
+            x, y = ax * xc + bx, ay * xc + by
+            r = d * math.sqrt(x * x + y * y)
+            k = min(int((math.atan2(y, x) + math.pi) * per_rad), BEARINGS - 1)
             slack = max(STEP_OVER_M, NOISE_SIGMAS * depth_sigma(d))
             if height < slack:
                 if height > -slack:

@@ -150,9 +150,7 @@ def _one_per_edge(
 
 
 def _apart(gap: Gap, other: Gap) -> bool:
-    (ax, ay), (bx, by) = gap.middle_xy, other.middle_xy
-    same_edge = any(
-        math.hypot(*(gap.jambs_xy[k] - other.jambs_xy[k])) < THICKNESS_M for k in (0, 1)
-    )
-    off = math.hypot(ax - bx, ay - by)
+    jambs, others = gap.jambs_xy.tolist(), other.jambs_xy.tolist()
+    same_edge = any(math.dist(a, b) < THICKNESS_M for a, b in zip(jambs, others, strict=True))
+    off = math.dist(gap.middle_xy.tolist(), other.middle_xy.tolist())
     return not same_edge and off > max(gap.width_m, other.width_m) / 2

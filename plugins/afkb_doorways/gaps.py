@@ -67,8 +67,7 @@ class Gap:
     @property
     def width_m(self) -> float:
         """From jamb to jamb, m."""
-        (ax, ay), (bx, by) = self.jambs_xy
-        return math.hypot(bx - ax, by - ay)
+        return math.dist(*self.jambs_xy.tolist())
 
     @property
     def middle_xy(self) -> Array:
@@ -87,17 +86,19 @@ def gaps_in(beams: Beams, narrowest_m: float, widest_m: float) -> list[Gap]:
     starts = np.flatnonzero(np.diff(pieces_of(points), prepend=-1))
     ends = np.append(starts[1:], len(points))
     rows = _gaps(points, at, starts, ends, beams.bearings, beams.reach_m, narrowest_m, widest_m)
-    return [_gap(row, points + beams.center_xy) for row in rows]
+    placed = points + beams.center_xy
+    return [_gap(row, placed) for row in rows.tolist()]
 
 
-def _gap(row: Array, points: Array) -> Gap:
-    i, i_last, j, j_last = row[5:9].astype(int)
+def _gap(row: list[float], points: Array) -> Gap:
+    deep, n_beams, square, *lengths = row[:5]
+    i, i_last, j, j_last = map(int, row[5:])
     return Gap(
-        points[[i, j]],
-        float(row[0]),
-        int(row[1]),
-        float(row[2]),
-        (float(row[3]), float(row[4])),
+        np.stack([points[i], points[j]]),
+        deep,
+        int(n_beams),
+        square,
+        (lengths[0], lengths[1]),
         (points[i_last : i + 1][::-1], points[j : j_last + 1]),
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -39,25 +40,26 @@ class LaserBoundDetector:
         """One detection per straight piece of the scan; none without a scan."""
         if view.scan is None:
             return ()
-        return tuple(self._detection(s, view.T_map_laser) for s in segments_of(view.scan))
+        T = view.T_map_laser
+        return tuple(self._detection(s, T) for s in segments_of(view.scan))
 
     def _detection(self, segment: Segment, T_map_laser: Array) -> Detection:
         ends = transform_xy(T_map_laser, segment.ends_xy)
         length, height = segment.length_m, float(T_map_laser[2, 3])
-        along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-        x, y = ends.mean(axis=0)
-        steps = np.linspace(0, 1, max(2, round(length / FOOTPRINT_STEP_M)))
+        (ax, ay), (bx, by) = ends.tolist()
+        span, x, y = ends[1] - ends[0], (ax + bx) / 2, (ay + by) / 2
+        n = max(2, round(length / FOOTPRINT_STEP_M))
         return Detection(
             detector=self.name,
             affordances={"BlockAbility": _probability(length)},
             box=OrientedBox(
-                (float(x), float(y), height),
+                (x, y, height),
                 (length, THICKNESS_M, THICKNESS_M),
-                float(np.arctan2(along[1], along[0])),
+                math.atan2(by - ay, bx - ax),
             ),
             position_xyz=np.array([x, y, height]),
-            covariance_xyz=_covariance(along, segment),
-            footprint_xy=ends[0] + np.outer(steps, ends[1] - ends[0]),
+            covariance_xyz=_covariance(bx - ax, by - ay, segment),
+            footprint_xy=ends[0] + np.arange(n)[:, None] * (span / (n - 1)),
             n_pixels=segment.n_beams,
             range_m=segment.range_m,
             segment_xy=ends,
@@ -72,10 +74,11 @@ def _probability(length_m: float) -> float:
     return least + (most - least) * min(1.0, length_m / SURE_LENGTH_M)
 
 
-def _covariance(along: Array, segment: Segment) -> Array:
+def _covariance(dx: float, dy: float, segment: Segment) -> Array:
     """(3, 3) m² of the segment's middle: loose along the wall and upwards, tight across."""
-    across = np.array([-along[1], along[0]])
-    covariance = np.diag([0.0, 0.0, HEIGHT_SIGMA_M**2])
+    length = math.hypot(dx, dy)
+    ux, uy = dx / length, dy / length
     line = RANGE_SIGMA_M**2 + segment.rms_m**2 / segment.n_beams
-    covariance[:2, :2] = END_SIGMA_M**2 * np.outer(along, along) + line * np.outer(across, across)
-    return covariance
+    excess = END_SIGMA_M**2 - line
+    xx, xy, yy = line + excess * ux * ux, excess * ux * uy, line + excess * uy * uy
+    return np.array([[xx, xy, 0.0], [xy, yy, 0.0], [0.0, 0.0, HEIGHT_SIGMA_M**2]])

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import laser_samples as samples
+from afkb.flow import LaserScan
 from afkb.plugins.protocols import Detector
 from afkb_laser_bounds.detector import LaserBoundDetector
+from afkb_laser_bounds.segments import segments_of
 from afkb_mapping.bounds import BoundMerger
 from afkb_mapping.geometry import T_from_xy_yaw
 
@@ -149,3 +151,17 @@ def test_a_wall_is_known_better_the_more_often_it_is_seen():
     offsets, turns = np.array(sigmas).T
     assert offsets[3] == pytest.approx(offsets[0] / 2, rel=0.01)
     assert (np.diff(turns) < 0).all()
+
+
+def test_a_noisy_line_is_fitted_as_by_total_least_squares():
+    rng = np.random.default_rng(3)
+    angles = np.arange(-0.6, 0.6, 0.01)
+    ranges = 2.0 / np.cos(angles - 0.2) + rng.normal(0, 0.01, len(angles))
+    scan = LaserScan(ranges.astype(np.float32), -0.6, 0.01, 0.1, 10.0)
+    (segment,) = segments_of(scan)
+    points = scan.points_xy - scan.points_xy.mean(axis=0)
+    _, spread, axes = np.linalg.svd(points, full_matrices=False)
+    assert segment.rms_m == pytest.approx(spread[1] / np.sqrt(len(points)), rel=1e-6)
+    assert segment.length_m == pytest.approx(np.ptp(points @ axes[0]), rel=1e-6)
+    assert segment.n_beams == len(points)
+    assert segment.range_m == pytest.approx(scan.ranges_m.min(), rel=1e-6)
