@@ -121,7 +121,7 @@ class Association:
         tracks = [t for t in self.tracks if not t.is_surface]
         if not tracks or not detections:
             return [None] * len(detections)
-        middles = np.array([t.footprint.box().mean(axis=0) for t in tracks])
+        middles = np.array([t.footprint.middle() for t in tracks])
         cost = np.array([_distances(tracks, middles, d) for d in detections])
         rows, columns = linear_sum_assignment(cost)
         found: list[ObservedTrack | None] = [None] * len(detections)
@@ -135,9 +135,11 @@ class Association:
         for same in (_same_thing, _same_surface):
             tracks = [t for t in self.tracks if t.is_surface is (same is _same_surface)]
             for i, first in enumerate(tracks):
-                if first not in self.tracks:
+                if first.id in self._merged_into:
                     continue
-                for second in (t for t in tracks[i + 1 :] if t in self.tracks):
+                for second in tracks[i + 1 :]:
+                    if second.id in self._merged_into:
+                        continue
                     if _may_touch(first, second) and same(first, second):
                         self._absorb(first, second)
 
@@ -217,8 +219,9 @@ def _as_long(track: ObservedTrack, detection: Detection) -> bool:
 def _may_touch(first: ObservedTrack, second: ObservedTrack) -> bool:
     """Whether the boxes around two footprints come as near as one thing's parts may."""
     (low, high), (other_low, other_high) = first.footprint.box(), second.footprint.box()
-    return bool(
-        (low <= other_high + THING_REACH_M).all() and (other_low <= high + THING_REACH_M).all()
+    return all(
+        low[k] <= other_high[k] + THING_REACH_M and other_low[k] <= high[k] + THING_REACH_M
+        for k in range(2)
     )
 
 

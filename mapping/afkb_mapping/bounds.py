@@ -8,27 +8,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Bound, Detection
+from afkb_mapping.bound_kernels import best_fit
 
 Array = NDArray[np.float64]
 
-OFFSET_M = 0.08
-"""Segments whose ends lie this near one line are one wall; the two sides of a wall are further."""
-GATE = 9.21
-"""Of squared differences over their variances: 99 % of two measurements of one line differ by less
-(chi-squared, offset and direction)."""
 POSE_SIGMA = (0.02, np.deg2rad(1.0))
 """Standard deviations, m and rad, by which a view's pose moves and turns all of its segments."""
 UNSTATED_SIGMA_M = 0.02
 """Of the offset of a segment that says nothing of it."""
 WALL_M = 1.0
-GAP_M = 0.3
-"""Ends this near are one wall with something before it; a doorway is wider."""
 
 
 @dataclass(slots=True)
@@ -131,15 +124,10 @@ class BoundMerger:
     def _match(self, segment: _Wall) -> int | None:
         """Index of the wall that a segment continues or repeats, the one it fits best."""
         n = len(self._walls)
-        if not n:
-            return None
-        relation = _relation(self._ends[:n], segment.ends)
-        variances = self._variances[:n] + np.square(segment.sigmas)
-        # The further a short segment lies along a long one, the more its direction matters.
-        variances[:, 0] += relation.lever**2 * variances[:, 1]
-        apart = relation.offset**2 / variances[:, 0] + relation.angle**2 / variances[:, 1]
-        fits = (relation.farthest < OFFSET_M) & (relation.gap < GAP_M) & (apart < GATE)
-        return int(np.argmin(np.where(fits, apart, np.inf))) if fits.any() else None
+        best = best_fit(
+            self._ends[:n], self._variances[:n], segment.ends, np.square(segment.sigmas)
+        )
+        return best if best >= 0 else None
 
     def part(self, start_xy: Array, end_xy: Array) -> bool:
         """Whether a wall crosses the straight line between two points (2,), m.
@@ -181,41 +169,3 @@ def across_sigma(segment_xy: Array, covariance_xyz: Array) -> float:
     normal = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-9)
     variance = float(normal @ covariance_xyz[:2, :2] @ normal)
     return math.sqrt(variance) if variance > 0 else UNSTATED_SIGMA_M
-
-
-class _Relation(NamedTuple):
-    """Of each wall (N,) to a segment, each held against the line of the longer of the two.
-
-    `offset`: of the shorter one's middle, and `farthest`: of its ends, m; `gap` along the line, m;
-    `lever`: of its middle from the longer one's, m; `angle` between them, rad.
-    """
-
-    offset: Array
-    farthest: Array
-    gap: Array
-    lever: Array
-    angle: Array
-
-
-def _relation(walls: Array, segment: Array) -> _Relation:
-    """How walls (N, 2, 2) lie to a segment (2, 2); a short one's direction is worth little."""
-    spans = walls[:, 1] - walls[:, 0]
-    lengths = np.linalg.norm(spans, axis=1)
-    span = segment[1] - segment[0]
-    length = float(np.linalg.norm(span))
-    longer = lengths >= length
-    base = np.where(longer[:, None], walls[:, 0], segment[0])
-    along = np.where(longer[:, None], spans / lengths[:, None], span / length)
-    reach = np.maximum(lengths, length)
-    other = np.where(longer[:, None, None], segment[None], walls) - base[:, None]
-    across = other[..., 1] * along[:, None, 0] - other[..., 0] * along[:, None, 1]
-    on_line = (other * along[:, None]).sum(axis=2)
-    gap = np.maximum(np.maximum(on_line.min(axis=1) - reach, -on_line.max(axis=1)), 0.0)
-    cross = np.abs(spans[:, 0] * span[1] - spans[:, 1] * span[0])
-    return _Relation(
-        np.abs(across.mean(axis=1)),
-        np.abs(across).max(axis=1),
-        gap,
-        np.abs(on_line.mean(axis=1) - reach / 2),
-        np.arcsin(np.clip(cross / (lengths * length), 0, 1)),
-    )

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb_mapping.order_statistics import percentile
 from afkb_mapping.outlines import outline_of_cells
 
 SEEN_SHARE = 0.2
@@ -40,6 +41,7 @@ class Footprint:
         self._near: dict[int, NDArray[np.uint8]] = {}
         self._points: NDArray[np.float64] | None = None
         self._box: NDArray[np.float64] | None = None
+        self._middle: NDArray[np.float64] | None = None
 
     def __bool__(self) -> bool:
         return bool(self._hits.any())
@@ -84,15 +86,18 @@ class Footprint:
     def _forget(self) -> None:
         """Drop what was derived from the counts, since they change."""
         self._near.clear()
-        self._points = self._box = None
+        self._points = self._box = self._middle = None
 
     def mask(self, margin: int = 0) -> NDArray[np.uint8]:
         """Cells that were seen often enough, with `margin` empty cells around."""
-        if not self._hits.any():
-            return np.zeros((1 + 2 * margin, 1 + 2 * margin), dtype=np.uint8)
-        well_seen = float(np.percentile(self._hits[self._hits > 0], 90))
-        mask = (self._hits >= max(1.0, math.ceil(SEEN_SHARE * well_seen))).astype(np.uint8)
-        return np.pad(mask, margin)
+        hits, n = self._hits[self._hits > 0], margin
+        if not len(hits):
+            return np.zeros((1 + 2 * n, 1 + 2 * n), dtype=np.uint8)
+        enough = max(1.0, math.ceil(SEEN_SHARE * percentile(hits, 90.0)))
+        rows, columns = self._hits.shape
+        mask = np.zeros((rows + 2 * n, columns + 2 * n), dtype=np.uint8)
+        mask[n : n + rows, n : n + columns] = self._hits >= enough
+        return mask
 
     def share_within(self, points_xy: NDArray[np.float64], reach_m: float) -> float:
         """Share of the points' cells that lie within `reach_m` of this footprint."""
@@ -140,6 +145,12 @@ class Footprint:
             points = self.points()
             self._box = np.array([points.min(axis=0), points.max(axis=0)])
         return self._box
+
+    def middle(self) -> NDArray[np.float64]:
+        """(2,) middle of `box`, m."""
+        if self._middle is None:
+            self._middle = self.box().mean(axis=0)
+        return self._middle
 
     def outline(self) -> Outline:
         """Rectangle and polygon around it, gaps up to a few cells closed.

@@ -171,14 +171,14 @@ class AffordanceMapper:
         for track in self._association.tracks:
             if track.id in seen or track.is_floor:
                 continue
-            body = _body(track, sight)
-            found = sight.look(body)
-            if _is_empty(found) and track.empty_from.is_new(eye, body[0, :2]):
+            body = track.footprint.points()
+            found = sight.look(body, track.look_height_m)
+            if _is_empty(found) and track.empty_from.is_new(eye, body[0]):
                 track.existence = against(track.existence, EMPTY_LIKELIHOOD_RATIO)
-            elif _is_overlooked(track, found, eye) and track.missed_from.is_new(eye, body[0, :2]):
+            elif _is_overlooked(track, found, eye) and track.missed_from.is_new(eye, body[0]):
                 track.existence = against(track.existence, OVERLOOKED_LIKELIHOOD_RATIO)
         for prediction in list(self._predictions):
-            empty = _is_empty(sight.look(prediction.sample_points()))
+            empty = _is_empty(sight.look(prediction.sample_points(), prediction.top_range_m[1]))
             if empty and prediction.empty_from.is_new(eye, prediction.center_xy):
                 prediction.probability = against(prediction.probability, EMPTY_LIKELIHOOD_RATIO)
             if prediction.probability < GONE_BELOW or self._is_walled_off(prediction):
@@ -228,16 +228,3 @@ def _is_overlooked(track: ObservedTrack, found: Look, eye: NDArray[np.float64]) 
         return False
     nearest = np.linalg.norm(track.footprint.points() - eye, axis=1).min()
     return bool(nearest <= track.farthest_m)
-
-
-def _body(track: ObservedTrack, sight: Sight) -> NDArray[np.float64]:
-    """Points (N, 3) that a look at a thing meets first: its top, or its body at half height.
-
-    Empty where the thing is out of sight anyway.
-    """
-    xy = track.footprint.points()
-    z = track.top.value if track.is_surface else (track.top.value + track.bottom.value) / 2
-    if not len(xy) or not sight.may_see(np.array([*xy[0], z]), float(np.ptp(xy, axis=0).sum())):
-        return np.zeros((0, 3))
-    thinned = xy[:: max(1, len(xy) // 200)]
-    return np.column_stack([thinned, np.full(len(thinned), z)])

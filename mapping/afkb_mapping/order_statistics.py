@@ -51,7 +51,7 @@ def _percentile_within(scratch: NDArray[np.float64], percent: float) -> float:
 
 
 @kernel
-def percentile(values: NDArray[np.floating], percent: float) -> float:
+def percentile(values: NDArray[np.number], percent: float) -> float:
     """What `numpy.percentile` gives for finite values (N,), N > 0."""
     return _percentile_within(values.astype(np.float64), percent)
 

@@ -51,11 +51,10 @@ class PredictedTrack:
         return self.high_xy - self.low_xy
 
     def sample_points(self, step_m: float = 0.1) -> NDArray[np.float64]:
-        """(N, 3) points on its expected upper surface, map frame."""
+        """(N, 2) points of its expected upper surface, map frame."""
         axes = [
             np.linspace(lo, hi, max(2, round((hi - lo) / step_m)))
             for lo, hi in zip(self.low_xy, self.high_xy, strict=True)
         ]
         x, y = np.meshgrid(*axes)
-        z = np.full(x.size, self.top_range_m[1])
-        return np.column_stack([x.ravel(), y.ravel(), z])
+        return np.column_stack([x.ravel(), y.ravel()])

@@ -89,6 +89,12 @@ class ObservedTrack:
         return self.strength_sum / self.pixels
 
     @property
+    def look_height_m(self) -> float:
+        """Height of what a look at it meets first, m: its top, or its body at half height."""
+        top = self.top.value
+        return top if self.is_surface else (top + self.bottom.value) / 2
+
+    @property
     def extent_known(self) -> bool:
         """Whether most of what was seen of it tells how far it reaches."""
         return 2 * self.pixels_of_known_extent >= self.pixels

@@ -21,19 +21,17 @@ class Viewpoints:
 
     def is_new(self, camera_xy: NDArray[np.float64], thing_xy: NDArray[np.float64]) -> bool:
         """Whether a look from here is independent of the earlier ones; remembers it if so."""
-        for other in self.seen_from:
-            step = float(np.hypot(*(camera_xy - other)))
-            if step < DISTINCT_STEP_M and _angle_between(camera_xy, other, thing_xy) < (
-                DISTINCT_BEARING
-            ):
+        x, y = float(camera_xy[0]), float(camera_xy[1])
+        thing_x, thing_y = float(thing_xy[0]), float(thing_xy[1])
+        for other_x, other_y in self.seen_from:
+            if math.hypot(x - other_x, y - other_y) >= DISTINCT_STEP_M:
+                continue
+            here, there = (x - thing_x, y - thing_y), (other_x - thing_x, other_y - thing_y)
+            if _angle_between(here, there) < DISTINCT_BEARING:
                 return False
-        self.seen_from.append((float(camera_xy[0]), float(camera_xy[1])))
+        self.seen_from.append((x, y))
         return True
 
 
-def _angle_between(
-    a: NDArray[np.float64], b: tuple[float, float], apex: NDArray[np.float64]
-) -> float:
-    to_a, to_b = a - apex, np.asarray(b) - apex
-    cross = to_a[0] * to_b[1] - to_a[1] * to_b[0]
-    return abs(math.atan2(float(cross), float(to_a @ to_b)))
+def _angle_between(a: tuple[float, float], b: tuple[float, float]) -> float:
+    return abs(math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]))

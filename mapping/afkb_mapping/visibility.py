@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import View
+from afkb_mapping.depth_points import intrinsics_of
+from afkb_mapping.kernels import kernel
 
 MARGIN_M = 0.10
 MARGIN_PER_RANGE = 0.03
@@ -32,42 +34,55 @@ class Sight:
     """What one placed view can tell about points of the map frame; without depth, nothing."""
 
     def __init__(self, view: View) -> None:
-        self._depth_m, self._camera = view.depth_m, view.camera
+        self._depth_m = view.depth_m
         if view.depth_m is not None:
-            self._T_camera_map = np.linalg.inv(view.T_map_camera)
+            self._intrinsics = intrinsics_of(view)
+            self._T_camera_map = np.asarray(np.linalg.inv(view.T_map_camera), np.float64)
 
-    def look(self, points_xyz: NDArray[np.float64]) -> Look:
-        """How the view looked at points (N, 3).
+    def look(self, points_xy: NDArray[np.float64], height_m: float, most: int = 200) -> Look:
+        """How the view looked at points (N, 2), map frame, that lie `height_m` above the floor.
 
         A point is *empty* where the depth behind it was measured, *hit* where depth agrees with
-        it, otherwise occluded or without return.
+        it, otherwise occluded or without return. Of many points about `most` are looked at.
         """
-        if self._depth_m is None or self._camera is None or not len(points_xyz):
+        if self._depth_m is None or not len(points_xy):
             return NOT_LOOKED_AT
-        camera, T = self._camera, self._T_camera_map
-        x, y, z = (points_xyz @ T[:3, :3].T + T[:3, 3]).T
-        ahead = (z > NEAREST_M) & (z < USABLE_RANGE_M)
-        if not ahead.any():
-            return NOT_LOOKED_AT
-        safe = np.where(ahead, z, 1.0)
-        u = np.round(camera.fx * x / safe + camera.cx).astype(int)
-        v = np.round(camera.fy * y / safe + camera.cy).astype(int)
-        inside = ahead & (u >= 0) & (u < camera.width) & (v >= 0) & (v < camera.height)
-        if not inside.any():
-            return NOT_LOOKED_AT
-        measured = self._depth_m[v[inside], u[inside]]
-        behind = measured - z[inside]
-        margin = MARGIN_M + MARGIN_PER_RANGE * z[inside]
-        returned = measured > 0
+        step = max(1, len(points_xy) // most)
         return Look(
-            float(inside.mean()),
-            float((returned & (behind > margin)).mean()),
-            float((returned & (np.abs(behind) <= margin)).mean()),
+            *_look(points_xy, height_m, step, self._depth_m, self._intrinsics, self._T_camera_map)
         )
 
-    def may_see(self, xyz: NDArray[np.float64], radius_m: float) -> bool:
-        """Whether anything within `radius_m` of a point can be in range at all: a quick test."""
-        if self._depth_m is None:
-            return False
-        z = float(self._T_camera_map[2, :3] @ xyz + self._T_camera_map[2, 3])
-        return NEAREST_M - radius_m < z < USABLE_RANGE_M + radius_m
+
+@kernel
+def _look(
+    points_xy: NDArray[np.float64],
+    height_m: float,
+    step: int,
+    depth_m: NDArray[np.float32],
+    intrinsics: NDArray[np.float64],
+    T: NDArray[np.float64],
+) -> tuple[float, float, float]:
+    """Shares of every step-th point: in view; of those, seen through, and hit."""
+    fx, fy, cx, cy = intrinsics
+    looked, inside, empty, hit = 0, 0, 0, 0
+    for n in range(0, len(points_xy), step):
+        px, py = points_xy[n, 0], points_xy[n, 1]
+        looked += 1
+        z = T[2, 0] * px + T[2, 1] * py + T[2, 2] * height_m + T[2, 3]
+        if not NEAREST_M < z < USABLE_RANGE_M:
+            continue
+        x = T[0, 0] * px + T[0, 1] * py + T[0, 2] * height_m + T[0, 3]
+        y = T[1, 0] * px + T[1, 1] * py + T[1, 2] * height_m + T[1, 3]
+        u, v = round(fx * x / z + cx), round(fy * y / z + cy)
+        if not (0 <= u < depth_m.shape[1] and 0 <= v < depth_m.shape[0]):
+            continue
+        inside += 1
+        measured = depth_m[v, u]
+        if measured <= 0:
+            continue
+        behind, margin = measured - z, MARGIN_M + MARGIN_PER_RANGE * z
+        empty += behind > margin
+        hit += abs(behind) <= margin
+    if inside == 0:
+        return 0.0, 0.0, 0.0
+    return inside / looked, empty / inside, hit / inside
