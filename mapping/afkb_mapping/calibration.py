@@ -22,7 +22,7 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, fields, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 from afkb.flow import Detection, View
@@ -48,13 +48,20 @@ class Curve:
     log_size: float = 0.0
     cut: float = 0.0
 
+    @property
+    def weights(self) -> tuple[float, ...]:
+        """The coefficients, in their order."""
+        return (
+            self.intercept, self.slope, self.log_range, self.log_pixels, self.log_size, self.cut,
+        )  # fmt: skip
+
     def probability(self, terms: Sequence[float]) -> float:
         """Probability of a detection with these terms.
 
         >>> round(Curve().probability((1.0, math.log(4.0), 0.0, 0.0, 0.0, 0.0)), 6)
         0.8
         """
-        logit = sum(w * t for w, t in zip(astuple(self), terms, strict=True))
+        logit = sum(w * t for w, t in zip(self.weights, terms, strict=True))
         return min(max(1 / (1 + math.exp(-logit)), 1 - SURE), SURE)
 
 

@@ -158,12 +158,12 @@ def _profile_measures(points: NDArray[np.float64], axes: NDArray[np.float64]) ->
     widths = slice_widths(along, np.ascontiguousarray(points @ axes[1]))
     if (widths > 0).sum() < SLICES - 1:
         return {}
-    middle = float(np.median(widths[SLICES // 3 : -(SLICES // 3)]))
-    ends = float(widths[:2].mean()), float(widths[-2:].mean())
+    middle = percentile(widths[SLICES // 3 : -(SLICES // 3)], 50.0)
+    tip = min(widths[0] + widths[1], widths[-2] + widths[-1]) / 2
     head = max(float(widths[:4].max()), float(widths[-4:].max()))
-    handle = float(np.median(np.sort(widths)[: SLICES // 2]))
+    handle = percentile(np.sort(widths)[: SLICES // 2], 50.0)
     return {
-        "tip_over_middle": min(ends) / max(middle, 1e-3),
+        "tip_over_middle": float(tip) / max(middle, 1e-3),
         "head_over_handle": head / max(handle, 1e-3),
     }
 
