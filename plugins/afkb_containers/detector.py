@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from afkb.flow import Detection, View
 from afkb_containers.describe import container_detection
-from afkb_containers.judge import LEAST_CLAIM, judge, look_at
+from afkb_containers.judge import LEAST_CLAIM, judge
+from afkb_containers.looks import look_at
 from afkb_containers.noise import noise_scale
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import ramp

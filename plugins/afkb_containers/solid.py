@@ -20,10 +20,15 @@ SLENDER = (5.0, 8.0)
 PLATE = (0.12, 0.20)
 """Thickness over width, as far as seen: books, frames and screens are below; the front of a bottle
 bows more, and a carton shows a side or its top."""
-DEEP = (0.30, 0.45)
-LEAN_DEG = (6.0, 12.0)
+UNSEEN_THICKNESS = 0.80
+"""How often a body that stands free is no plate, where noise hides how thick it is."""
+DEEP = (0.40, 0.60)
+LEAN_DEG = (4.0, 9.0)
 """Cartons and cans stand upright; what leans further, and isn't this deep for its width, is a
-frame, a book or a screen."""
+frame, a book or a screen. Levelling is off by one or two degrees."""
+FACE = (0.70, 0.85)
+"""Share of a body in one plane: from the second on one sees a face and nothing else, so that
+whatever else seems to make it deep is strays of what is behind."""
 SQUAT = (0.55, 0.80)
 """Height over length: what is this upright is a cup or a can even if it is low."""
 
@@ -35,8 +40,17 @@ def compact(height_m: float, length_m: float, spread: Spread, settings: Containe
         * membership(max(height_m, length_m), settings.max_extent_m)
         * _thick(spread, height_m, settings)
         * (1 - ramp(height_m / max(spread.width_m, 1e-3), SLENDER))
-        * (1 - ramp(spread.lean_deg, LEAN_DEG) * (1 - ramp(spread.shape, DEEP)))
+        * (1 - _leans(spread))
     )
+
+
+def _leans(spread: Spread) -> float:
+    """How much a body is a plate that leans, 0 to 1: by the face one sees, else by the whole."""
+    if spread.lies:
+        return 0.0
+    flat = ramp(spread.face_share, FACE)
+    as_whole = ramp(spread.lean_deg, LEAN_DEG) * (1 - ramp(spread.shape, DEEP))
+    return flat * ramp(spread.face_lean_deg, LEAN_DEG) + (1 - flat) * as_whole
 
 
 def convex(outline: Silhouette, height_m: float) -> float:
@@ -69,12 +83,14 @@ def _tall(height_m: float, length_m: float, settings: ContainerSettings) -> floa
 
 
 def _thick(spread: Spread, height_m: float, settings: ContainerSettings) -> float:
-    """Mean over what the thickness may be: half where noise hides whether it is a plate.
+    """Mean over what the thickness may be; where noise could make as much, how often such are.
 
     Of what is looked down on, one sees a lid; it is as thick as it is high over its support.
     """
-    may_be = (spread.least_m, spread.thickness_m, spread.most_m)
     width = max(spread.width_m, 1e-3)
+    may_be = (spread.least_m, spread.thickness_m, spread.most_m)
     degrees = (membership(t, settings.solid_thickness_m) * ramp(t / width, PLATE) for t in may_be)
-    thick = sum(degrees) / len(may_be)
+    unseen = membership(spread.doubt_m, settings.solid_thickness_m)
+    unseen *= ramp(max(spread.doubt_m, spread.most_m) / width, PLATE)
+    thick = max(UNSEEN_THICKNESS * unseen, sum(degrees) / len(may_be))
     return max(thick, membership(height_m, settings.solid_height_m)) if spread.lies else thick

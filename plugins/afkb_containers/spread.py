@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb_containers.face import face_of, narrowing_deg
 from afkb_mapping.bodies import Body
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentiles
@@ -19,7 +20,7 @@ NOISE_SPAN = 3.11
 """Distance between these percentiles of normal noise, in standard deviations."""
 SIGMA_UNSURE = 0.15
 """How far off a sensor's noise model is, as a share of the standard deviation."""
-LEAST_SAMPLES, MOST_SAMPLES = 40, 2000
+LEAST_SAMPLES, MOST_SAMPLES = 40, 1000
 LYING_DEG = 40.0
 
 
@@ -29,8 +30,12 @@ class Spread:
 
     - `thickness_m`: the smallest; `least_m` and `most_m`: what it may be as well, as the noise is
       not known better. A plate that is seen from far may be as thick as noise is.
-    - `width_m`: the next larger one. `lean_deg`: of the plane across the smallest, from upright;
+    - `doubt_m`: how thick noise alone could make a plate.
+    - `width_m`: the next larger one. `lean_deg`: of the plane across the smallest, from upright,
+      less what is explained as the front of a body that grows narrower upwards, as bottles do;
       where it `lies` rather than stands, 0.
+    - `face_share`, `face_lean_deg`: share of the points that are on one plane, and how far that
+      leans.
     """
 
     thickness_m: float
@@ -39,6 +44,9 @@ class Spread:
     width_m: float
     lean_deg: float
     lies: bool
+    doubt_m: float
+    face_share: float
+    face_lean_deg: float
 
     @property
     def shape(self) -> float:
@@ -46,17 +54,18 @@ class Spread:
         return self.thickness_m / max(self.width_m, 1e-3)
 
 
-UNKNOWN = Spread(0.0, 0.0, 0.0, 0.0, 0.0, False)
+UNKNOWN = Spread(0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0, 0.0, 0.0)
 
 
-def spread_of(body: Body, camera_xyz: NDArray[np.float64], sigma_m: float, edge_px: int) -> Spread:
+def spread_of(
+    body: Body, camera_xyz: NDArray[np.float64], sigma_m: float, inner: NDArray[np.int64]
+) -> Spread:
     """Spread of a body's points along the axes of their scatter, less a depth noise of sigma_m.
 
     Noise moves a point along its sight line, so that it adds to the scatter matrix there alone.
-    The outermost edge_px pixels, where a sensor mixes what lies before and behind, don't turn the
-    axes.
+    Pixels at its outline, where a sensor mixes what lies before and behind, are not `inner` (M,);
+    they don't turn the axes.
     """
-    inner = _off_edges(body.u, body.v, edge_px)
     if len(inner) < LEAST_SAMPLES:
         return UNKNOWN
     inner = inner[:: max(1, len(inner) // MOST_SAMPLES)]
@@ -69,30 +78,31 @@ def spread_of(body: Body, camera_xyz: NDArray[np.float64], sigma_m: float, edge_
     least, mean, most = (
         _less(span, NOISE_SPAN * noise * (1 + off * SIGMA_UNSURE)) / KEPT for off in (1, 0, -1)
     )
-    lean = math.degrees(math.asin(min(abs(float(normal[2])), 1.0)))
     width = _extent_along(points, across) / KEPT
-    lies = lean > LYING_DEG
-    return Spread(mean, least, most, width, 0.0 if lies else lean, lies)
+    lies = _lean(normal) > LYING_DEG
+    share, face = face_of(points, normal, noise)
+    narrows = 0.0 if body.cut_by_image else narrowing_deg(points, normal)
+    sure, unsure = (1 - SIGMA_UNSURE) * noise, (1 + SIGMA_UNSURE) * noise
+    return Spread(
+        thickness_m=mean,
+        least_m=least,
+        most_m=most,
+        width_m=width,
+        lean_deg=0.0 if lies else max(_lean(normal) - narrows, 0.0),
+        lies=lies,
+        doubt_m=_less(NOISE_SPAN * unsure, NOISE_SPAN * sure) / KEPT,
+        face_share=share,
+        face_lean_deg=max(_lean(face) - narrows, 0.0),
+    )
+
+
+def _lean(normal: NDArray[np.float64]) -> float:
+    """How far a plane leans from upright, degrees."""
+    return math.degrees(math.asin(min(abs(float(normal[2])), 1.0)))
 
 
 def _less(span_m: float, noise_m: float) -> float:
     return math.sqrt(max(span_m**2 - noise_m**2, 0.0))
-
-
-@kernel
-def _off_edges(u: NDArray[np.int32], v: NDArray[np.int32], edge_px: int) -> NDArray[np.int64]:
-    """Indexes of the pixels that have the body on all four sides, edge_px away."""
-    u0, v0, pad = u.min(), v.min(), edge_px
-    own = np.zeros((v.max() - v0 + 1 + 2 * pad, u.max() - u0 + 1 + 2 * pad), np.bool_)
-    for k in range(len(u)):
-        own[v[k] - v0 + pad, u[k] - u0 + pad] = True
-    out, n = np.empty(len(u), np.int64), 0
-    for k in range(len(u)):
-        i, j = v[k] - v0 + pad, u[k] - u0 + pad
-        if own[i - pad, j] and own[i + pad, j] and own[i, j - pad] and own[i, j + pad]:
-            out[n] = k
-            n += 1
-    return out[:n]
 
 
 @kernel

@@ -64,9 +64,8 @@ def plate(lean_deg: float, sigma_m: float) -> Spread:
     rng = np.random.default_rng(3)
     rows, cols = np.mgrid[-0.1:0.1:60j, -0.1:0.1:60j]
     x = 2.0 + rows * np.tan(np.radians(lean_deg)) + rng.normal(0, sigma_m, rows.shape)
-    return spread_of(
-        body_of(x, np.stack([x, cols * x / 2, rows * x / 2], -1)), np.zeros(3), sigma_m, 1
-    )
+    body = body_of(x, np.stack([x, cols * x / 2, rows * x / 2], -1))
+    return spread_of(body, np.zeros(3), sigma_m, np.arange(len(body.u)))
 
 
 def test_a_plate_is_thin_and_leans_whatever_the_noise() -> None:
