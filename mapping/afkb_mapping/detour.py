@@ -51,19 +51,29 @@ def room_to_room(jambs_xy: Array, free_cells: Mask, grid: OccupancyGrid) -> floa
     """How well a gap between jambs (2, 2), m, parts two areas of free cells, 0 to 1."""
     free, origin = _window(jambs_xy, free_cells, grid)
     resolution = grid.resolution_m
-    along = jambs_xy[1] - jambs_xy[0]
-    width = float(np.linalg.norm(along))
-    normal = np.array([-along[1], along[0]]) / width
     jambs = (jambs_xy - origin) / resolution
-    round_ = _way_round(free, jambs, normal * BESIDE_M / resolution, resolution)
+    round_ = _way_round(free, jambs, _normal(jambs) * BESIDE_M / resolution, resolution)
     short, long = DETOUR_M
     parted = min(1.0, max(0.0, (round_ - short) / (long - short)))
-    sides = [
-        max(_width_at(free, jambs, sign * shift * normal / resolution) for shift in SHIFTS_M)
+    return parted * (1.0 if is_narrow(jambs_xy, free_cells, grid) else LEFT_OVER)
+
+
+def is_narrow(jambs_xy: Array, free_cells: Mask, grid: OccupancyGrid) -> bool:
+    """Whether a gap between jambs (2, 2), m, is narrower than the way before it or behind it."""
+    free, origin = _window(jambs_xy, free_cells, grid)
+    jambs = (jambs_xy - origin) / grid.resolution_m
+    width, normal = math.dist(*jambs.tolist()), _normal(jambs) / grid.resolution_m
+    return any(
+        _width_at(free, jambs, sign * shift * normal) >= WIDER * width
         for sign in (-1, 1)
-    ]
-    is_narrow = max(sides) * resolution >= WIDER * width
-    return parted * (1.0 if is_narrow else LEFT_OVER)
+        for shift in SHIFTS_M
+    )
+
+
+def _normal(jambs: Array) -> Array:
+    """(2,) unit, straight through a gap."""
+    along = jambs[1] - jambs[0]
+    return np.array([-along[1], along[0]]) / math.hypot(*along)
 
 
 def _window(jambs_xy: Array, free_cells: Mask, grid: OccupancyGrid) -> tuple[Mask, Array]:

@@ -11,7 +11,7 @@ from afkb.flow import Closure, Detection, Hypothesis, Relation, TopologicalMap, 
 from afkb.inference import Network
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
-from afkb_mapping.doorway_merger import DoorwayMerger
+from afkb_mapping.doorway_merger import DoorwayMerger, passage_width
 from afkb_mapping.entities import is_kept
 from afkb_mapping.grid_input import insert_view
 from afkb_mapping.grounding import fits, ground, joined, same_prediction
@@ -45,7 +45,7 @@ class AffordanceMapper:
         self._association = Association(self._new_id)
         self._places = Places(self._new_id)
         self._bounds = BoundMerger()
-        self._doorways = DoorwayMerger()
+        self._doorways = DoorwayMerger(passage_width(network.knowledge_base))
         self._grid = GridBuilder()
         self._predictions: list[PredictedTrack] = []
         self._closures: list[Closure] = []

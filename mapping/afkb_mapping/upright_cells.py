@@ -7,7 +7,7 @@ What views have seen is kept by cell, so that memory grows with the area and not
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from afkb.flow import OccupancyGrid
 from afkb_mapping.panorama import Panorama
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 CELL_M = 0.05
 """About a beam spacing at five metres, and half of what a wall is thick."""
@@ -25,6 +26,8 @@ OVER_M = 0.4
 """One looks over what is low, where the nearest tall thing is this much further."""
 LEAST_VIEWS = 2
 """What a single view shows may be a passer-by, or pixels at an edge."""
+TALL_SHARE = 0.25
+"""A cell of which less is tall is a low thing that hid its wall once or twice."""
 
 Cell = tuple[int, int]
 
@@ -70,19 +73,33 @@ class UprightCells:
         ]
         return float(np.mean(hit))
 
-    def mark(self, grid: OccupancyGrid) -> NDArray[np.bool_]:
+    def views(self, point_xy: Array) -> int:
+        """How many views saw something stand at a point (2,), m, or in a cell beside it."""
+        return max(self._count(c) for c in _around(point_xy[None], 1.5 * CELL_M))
+
+    def mark(self, grid: OccupancyGrid) -> Mask:
         """(rows, cols) of a grid: cells in which something stands that a laser may look under."""
-        marked: NDArray[np.bool_] = np.zeros(grid.probability.shape, dtype=np.bool_)
-        for cell in {**self._tall, **self._low}:
-            if self._count(cell) >= LEAST_VIEWS:
-                x, y = ((k + 0.5) * CELL_M - o for k, o in zip(cell, grid.origin_xy, strict=True))
-                row, col = int(y // grid.resolution_m), int(x // grid.resolution_m)
-                if 0 <= row < marked.shape[0] and 0 <= col < marked.shape[1]:
-                    marked[row, col] = True
-        return marked
+        cells = [c for c in {**self._tall, **self._low} if self._count(c) >= LEAST_VIEWS]
+        return _marked(cells, grid)
+
+    def mark_tall(self, grid: OccupancyGrid) -> Mask:
+        """(rows, cols) of a grid: cells in which something tall stands, as far as was seen."""
+        cells = [c for c, n in self._tall.items() if n >= TALL_SHARE * self._count(c)]
+        return _marked(cells, grid)
 
     def _count(self, cell: Cell) -> int:
         return self._tall.get(cell, 0) + self._low.get(cell, 0)
+
+
+def _marked(cells: Sequence[Cell], grid: OccupancyGrid) -> Mask:
+    """(rows, cols) of a grid: where the middles of these cells lie."""
+    marked: Mask = np.zeros(grid.probability.shape, dtype=np.bool_)
+    if cells:
+        middles = (np.array(cells) + 0.5) * CELL_M - np.array(grid.origin_xy)
+        cols, rows = np.floor(middles / grid.resolution_m).astype(int).T
+        inside = (rows >= 0) & (rows < marked.shape[0]) & (cols >= 0) & (cols < marked.shape[1])
+        marked[rows[inside], cols[inside]] = True
+    return marked
 
 
 def _cells(panorama: Panorama, ranges_m: Array, where: NDArray[np.bool_]) -> Iterable[Cell]:

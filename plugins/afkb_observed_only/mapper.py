@@ -11,7 +11,7 @@ from afkb.flow import Detection, Hypothesis, TopologicalMap, View
 from afkb.inference import Network
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
-from afkb_mapping.doorway_merger import DoorwayMerger
+from afkb_mapping.doorway_merger import DoorwayMerger, passage_width
 from afkb_mapping.grid_input import insert_view
 from afkb_mapping.ids import Ids
 from afkb_mapping.occupancy import GridBuilder
@@ -28,7 +28,7 @@ class ObservedOnlyMapper:
         self._association = Association(new_id)
         self._places = Places(new_id)
         self._bounds = BoundMerger()
-        self._doorways = DoorwayMerger()
+        self._doorways = DoorwayMerger(passage_width(network.knowledge_base))
         self._grid = GridBuilder()
         self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
         self._looked_from: list[NDArray[np.float64]] = []
