@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 
 import numpy as np
+from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
 from afkb_mapping.depth_points import points_of_pixels
 from afkb_mapping.image_regions import Rectangle, Region, returning_rectangle
+from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
 
 LEAST_SUPPORT = 0.3
 MOST_SUPPORTS = 62
+SAMPLES = 500
+"""Depths that say how far off a body is."""
 
 
 class Stand(IntEnum):
@@ -35,11 +39,13 @@ class Body(Region):
 
     Heights of points are those over the support as it is seen, so that a tilt of the view
     doesn't reach them; `slope` (3,) is what was taken off: per metre of x, of y, and at all.
+    `noise`: how many times noisier than `depth_sigma` says its view is.
     """
 
     stand: Stand
     support_height_m: float | None
     slope: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    noise: float = field(default=1.0, kw_only=True)
 
     @property
     def lowest_m(self) -> float:
@@ -52,9 +58,37 @@ class Body(Region):
         return self.lowest_m if self.support_height_m is None else self.support_height_m
 
     @property
+    def range_m(self) -> float:
+        """Depth of most of it, m."""
+        return percentile(self.depth_m[:: max(1, len(self.depth_m) // SAMPLES)], 50.0)
+
+    @property
     def sigma_m(self) -> float:
         """Standard deviation of its depth, m."""
-        return depth_sigma(percentile(self.depth_m, 50.0))
+        return self.noise * depth_sigma(self.range_m)
+
+    def part(self, index: NDArray[np.int64]) -> Body:
+        """The body of those of its pixels that have these indexes (M,)."""
+        u, v, depth, points = _taken(index, self.u, self.v, self.depth_m, self.points)
+        return replace(self, u=u, v=v, depth_m=depth, points=points)
+
+
+@kernel
+def _taken(
+    index: NDArray[np.int64],
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
+    depth_m: NDArray[np.float32],
+    points: NDArray[np.float64],
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32], NDArray[np.float64]]:
+    n = len(index)
+    us, vs = np.empty(n, np.int32), np.empty(n, np.int32)
+    zs, xyz = np.empty(n, np.float32), np.empty((n, 3))
+    for m in range(n):
+        k = index[m]
+        us[m], vs[m], zs[m] = u[k], v[k], depth_m[k]
+        xyz[m, 0], xyz[m, 1], xyz[m, 2] = points[k, 0], points[k, 1], points[k, 2]
+    return us, vs, zs, xyz
 
 
 def bodies_among(earlier: Sequence[Detection], view: View) -> Iterator[tuple[int, Body]]:

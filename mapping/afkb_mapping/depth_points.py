@@ -21,17 +21,18 @@ def points_of_pixels(
 ) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
     """Depths (N,) and points (N, 3), map frame, of some pixels of a view."""
     assert view.depth_m is not None
-    return _points_of_pixels(u, v, view.depth_m, intrinsics_of(view), view.T_map_camera)
+    return points_at(u, v, view.depth_m, intrinsics_of(view), view.T_map_camera)
 
 
 @kernel
-def _points_of_pixels(
+def points_at(
     u: NDArray[np.int32],
     v: NDArray[np.int32],
     depth_m: NDArray[np.float32],
     intrinsics: NDArray[np.float64],
     T_map_camera: NDArray[np.float64],
 ) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+    """Depths (N,) and points (N, 3), map frame, of columns u and rows v of a depth image (H, W)."""
     fx, fy, cx, cy = intrinsics
     T = T_map_camera
     depths, points = np.empty(len(u), np.float32), np.empty((len(u), 3))
@@ -79,3 +80,33 @@ def height_per_depth(
     fx, fy, cx, cy = intrinsics
     a, b, c = T_map_camera[2, :3]
     return np.array([a / fx, b / fy, c - a * cx / fx - b * cy / fy])
+
+
+@kernel
+def points_of_row(
+    depth_m: NDArray[np.float32],
+    v: int,
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
+    out: NDArray[np.float32],
+    u0: int,
+    u1: int,
+) -> None:
+    """Points of row v of a depth image (H, W), map frame, into `out` (3, W): x, y and height.
+
+    Columns u0 up to u1 are written; where nothing returned, it is the camera's place. One plain
+    loop, which the compiler turns into vector instructions: with it before, a loop over pixels
+    costs less than with its own arithmetic.
+    """
+    T = T_map_camera.astype(np.float32)
+    inverse_fx, cx = np.float32(1.0 / intrinsics[0]), np.float32(intrinsics[2])
+    down = np.float32((v - intrinsics[3]) / intrinsics[1])
+    ax, ay, az = T[0, 1] * down + T[0, 2], T[1, 1] * down + T[1, 2], T[2, 1] * down + T[2, 2]
+    kx, ky, kz = T[0, 0] * inverse_fx, T[1, 0] * inverse_fx, T[2, 0] * inverse_fx
+    bx, by, bz = T[0, 3], T[1, 3], T[2, 3]
+    row, xs, ys, hs = depth_m[v], out[0], out[1], out[2]
+    for u in range(u0, u1):
+        z, right = row[u], np.float32(u) - cx
+        xs[u] = (kx * right + ax) * z + bx
+        ys[u] = (ky * right + ay) * z + by
+        hs[u] = (kz * right + az) * z + bz

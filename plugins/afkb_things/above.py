@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb_mapping.depth_points import points_of_row
 from afkb_mapping.kernels import kernel
 from afkb_mapping.sensor_noise import depth_sigma
 from afkb_things.supports import RASTER_M, WALL_BIT
 
-CELLS_PER_M = 1.0 / RASTER_M
+CELLS_PER_M = np.float32(1.0 / RASTER_M)
 ON_WALL = -2
 FLOOR_M = 0.03
 MAX_SLOPE = 0.05
@@ -21,7 +22,8 @@ SUPPORT_BITS = ~(np.uint64(1) << WALL_BIT)
 @kernel
 def fit_supports(
     depth_m: NDArray[np.float32],
-    points: NDArray[np.float32],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
     heights_m: NDArray[np.float64],
     raster: NDArray[np.uint64],
     origin_xy: NDArray[np.float64],
@@ -33,7 +35,7 @@ def fit_supports(
     n = len(heights_m)
     planes = np.zeros((n, 3))
     planes[:, 2] = heights_m
-    xyh, bits = _over_raster(depth_m, points, raster, origin_xy)
+    xyh, bits = _over_raster(depth_m, intrinsics, T_map_camera, raster, origin_xy)
     for near in (0.020, 0.010):
         sums = np.zeros((n, 9))
         for i in range(len(bits)):
@@ -64,24 +66,31 @@ def fit_supports(
 @kernel
 def _over_raster(
     depth_m: NDArray[np.float32],
-    points: NDArray[np.float32],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
     raster: NDArray[np.uint64],
     origin_xy: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.uint64]]:
     """Pixels over a support: x, y from the raster's corner and height (N, 3); bits."""
     rows, cols = depth_m.shape
     xyh, bits, n = np.empty((depth_m.size, 3)), np.empty(depth_m.size, np.uint64), 0
+    row, ox, oy = (
+        np.empty((3, cols), np.float32),
+        np.float32(origin_xy[0]),
+        np.float32(origin_xy[1]),
+    )
     for v in range(rows):
+        points_of_row(depth_m, v, intrinsics, T_map_camera, row, 0, cols)
         for u in range(cols):
             if depth_m[v, u] <= 0:
                 continue
-            x, y = points[v, u, 0] - origin_xy[0], points[v, u, 1] - origin_xy[1]
+            x, y = row[0, u] - ox, row[1, u] - oy
             i, j = int(x * CELLS_PER_M), int(y * CELLS_PER_M)
             if not (0 <= i < raster.shape[0] and 0 <= j < raster.shape[1]):
                 continue
             over = raster[i, j] & SUPPORT_BITS
             if over != 0:
-                xyh[n, 0], xyh[n, 1], xyh[n, 2], bits[n] = x, y, points[v, u, 2], over
+                xyh[n, 0], xyh[n, 1], xyh[n, 2], bits[n] = x, y, row[2, u], over
                 n += 1
     return xyh[:n], bits[:n]
 
@@ -112,57 +121,53 @@ def label_things(
     T_map_camera: NDArray[np.float64],
     planes: NDArray[np.float64],
     large: NDArray[np.bool_],
+    roots: NDArray[np.int64],
     raster: NDArray[np.uint64],
     origin_xy: NDArray[np.float64],
     slope: NDArray[np.float64],
     low_m: float,
     high_m: float,
-) -> tuple[NDArray[np.float32], NDArray[np.int16], NDArray[np.float32]]:
-    """Say which support each pixel's point stands on, from 1, and how high over it.
+    noise: float,
+) -> tuple[
+    NDArray[np.int16], NDArray[np.float32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]
+]:
+    """Say which support each pixel's point stands on, from 1, and how high over what carries that.
 
-    Returns points (H, W, 3) float32, map frame, 0 where nothing returned; labels (H, W), 0 where
-    there is none, -1 on a support or the floor itself, ON_WALL on an upright plane; and heights
-    over the support (H, W) float32, m.
+    Returns labels (H, W), 0 where there is none, -1 on a support or the floor itself, ON_WALL on
+    an upright plane; heights over the support that carries all below (see `roots_of`), (H, W)
+    float32, m, 0 where nothing stands; and of what stands, in the order of the image, columns, rows
+    and that support, from 0, all (N,).
 
     `slope` (3,): what one metre of depth changes in height is slope . (u, v, 1).
     """
     rows, cols = depth_m.shape
-    fx, fy, cx, cy = intrinsics
-    T = T_map_camera
-    bx, by, bz = T[0, 3], T[1, 3], T[2, 3]
-    ox, oy = origin_xy[0], origin_xy[1]
-    right = np.empty((cols, 3))
-    for u in range(cols):
-        for k in range(3):
-            right[u, k] = T[k, 0] * ((u - cx) / fx)
-    points = np.zeros((rows, cols, 3), np.float32)
-    out = np.zeros((rows, cols), np.int16)
+    ox, oy = np.float32(origin_xy[0]), np.float32(origin_xy[1])
+    row, floor = np.empty((3, cols), np.float32), np.float32(FLOOR_M)
+    labels = np.zeros((rows, cols), np.int16)
     overs = np.zeros((rows, cols), np.float32)
+    us, vs, ks = np.empty((3, rows * cols), np.int32)
+    n = 0
     for v in range(rows):
-        down = (v - cy) / fy
-        ax, ay, az = T[0, 1] * down + T[0, 2], T[1, 1] * down + T[1, 2], T[2, 1] * down + T[2, 2]
+        points_of_row(depth_m, v, intrinsics, T_map_camera, row, 0, cols)
         for u in range(cols):
-            z = depth_m[v, u]
+            z, h = depth_m[v, u], row[2, u]
             if z <= 0:
                 continue
-            px, py = (right[u, 0] + ax) * z + bx, (right[u, 1] + ay) * z + by
-            h = (right[u, 2] + az) * z + bz
-            points[v, u, 0], points[v, u, 1], points[v, u, 2] = px, py, h
-            if h < FLOOR_M:
-                out[v, u] = -1
+            if h < floor:
+                labels[v, u] = -1
                 continue
-            x, y = px - ox, py - oy
+            x, y = row[0, u] - ox, row[1, u] - oy
             i, j = int(x * CELLS_PER_M), int(y * CELLS_PER_M)
             if not (0 <= i < raster.shape[0] and 0 <= j < raster.shape[1]):
                 continue
             bits = raster[i, j]
-            if bits >> WALL_BIT != 0:
-                out[v, u] = ON_WALL
-                continue
             if bits == 0:
                 continue
+            if bits >> WALL_BIT != 0:
+                labels[v, u] = ON_WALL
+                continue
             rise = abs(slope[0] * u + slope[1] * v + slope[2])
-            margin = max(low_m, 3.0 * depth_sigma(z) * rise)
+            margin = max(low_m, 3.0 * noise * depth_sigma(z) * rise)
             k = -1
             while bits != 0:
                 k += 1
@@ -174,11 +179,14 @@ def label_things(
                 if over > high_m:
                     break
                 if over > margin:
-                    out[v, u] = k + 1
-                    overs[v, u] = over
+                    r = roots[k]
+                    labels[v, u] = k + 1
+                    overs[v, u] = h - (planes[r, 0] * x + planes[r, 1] * y + planes[r, 2])
+                    us[n], vs[n], ks[n] = u, v, r
+                    n += 1
                     break
                 if over > -margin:
-                    out[v, u] = -1
+                    labels[v, u] = -1
                     if large[k]:
                         break
-    return points, out, overs
+    return labels, overs, us[:n], vs[:n], ks[:n]

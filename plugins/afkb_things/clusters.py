@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.bodies import Body, Stand
+from afkb_mapping.depth_points import points_at
 from afkb_mapping.from_above import hull_candidates
 from afkb_mapping.grid_components import AREA, components
 from afkb_mapping.image_regions import order_by_label, pixels_by_label
@@ -37,7 +38,7 @@ def clusters_from_above(
     least_tall = settings.min_pixels // 2
     height_m, slope = float(scene.supports.heights_m[support]), scene.slope_under(support)
     depths, xyz, tall, ij, count, (i0, j0, i1, j1) = _over_support(
-        u, v, scene.depth_m, scene.points, scene.overs_m, height_m,
+        u, v, scene.depth_m, scene.intrinsics, scene.T_map_camera, scene.overs_m, height_m,
         settings.core_m, settings.cell_m,
     )  # fmt: skip
     if count < least_tall or (i1 - i0 + 5) * (j1 - j0 + 5) > MAX_GRID_CELLS:
@@ -45,9 +46,10 @@ def clusters_from_above(
     ij -= np.array([i0 - 2, j0 - 2])
     names, enough = _names_from_above(ij, tall, (i1 - i0 + 5, j1 - j0 + 5), least_tall)
     order, starts = order_by_label(_name_each(ij, names), enough)
+    stand = (scene.depth_m.shape, Stand.ON_SUPPORT, height_m, slope)
+    whole = Body(u, v, depths, xyz, *stand, noise=scene.noise)
     for k in np.flatnonzero(np.diff(starts) >= settings.min_pixels):
-        own = _taken(order[starts[k] : starts[k + 1]], u, v, depths, xyz)
-        yield Body(*own, scene.depth_m.shape, Stand.ON_SUPPORT, height_m, slope)
+        yield whole.part(order[starts[k] : starts[k + 1]])
 
 
 @kernel
@@ -55,7 +57,8 @@ def _over_support(
     u: NDArray[np.int32],
     v: NDArray[np.int32],
     depth_m: NDArray[np.float32],
-    points: NDArray[np.float32],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
     overs_m: NDArray[np.float32],
     support_height_m: float,
     core_m: float,
@@ -65,40 +68,19 @@ def _over_support(
 ]:
     """Depths and points of pixels, which are tall, their grid squares; number and box of those."""
     n = len(u)
-    depths, xyz = np.empty(n, np.float32), np.empty((n, 3))
+    depths, xyz = points_at(u, v, depth_m, intrinsics, T_map_camera)
     tall, ij = np.empty(n, np.bool_), np.empty((n, 2), np.int64)
     far = np.int64(1 << 60)
     i0, j0, i1, j1, count = far, far, -far, -far, 0
     for m in range(n):
-        r, c = v[m], u[m]
-        over = overs_m[r, c]
-        depths[m], tall[m] = depth_m[r, c], over > core_m
-        xyz[m, 0], xyz[m, 1] = points[r, c, 0], points[r, c, 1]
+        over = overs_m[v[m], u[m]]
+        tall[m] = over > core_m
         xyz[m, 2] = np.float32(support_height_m) + over
         i, j = np.int64(np.floor(xyz[m, 0] / cell_m)), np.int64(np.floor(xyz[m, 1] / cell_m))
         ij[m, 0], ij[m, 1] = i, j
         if tall[m]:
             i0, j0, i1, j1, count = min(i0, i), min(j0, j), max(i1, i), max(j1, j), count + 1
     return depths, xyz, tall, ij, count, (i0, j0, i1, j1)
-
-
-@kernel
-def _taken(
-    index: NDArray[np.int64],
-    u: NDArray[np.int32],
-    v: NDArray[np.int32],
-    depths: NDArray[np.float32],
-    xyz: NDArray[np.float64],
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32], NDArray[np.float64]]:
-    """The pixels that have these indexes."""
-    n = len(index)
-    us, vs = np.empty(n, np.int32), np.empty(n, np.int32)
-    zs, points = np.empty(n, np.float32), np.empty((n, 3))
-    for m in range(n):
-        k = index[m]
-        us[m], vs[m], zs[m] = u[k], v[k], depths[k]
-        points[m, 0], points[m, 1], points[m, 2] = xyz[k, 0], xyz[k, 1], xyz[k, 2]
-    return us, vs, zs, points
 
 
 @kernel

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
 from afkb_mapping.bodies import Body
-from afkb_mapping.image_regions import pixels_by_label
 from afkb_things.clusters import clusters_from_above
 from afkb_things.describe import body_detection
 from afkb_things.hidden import Loose, things_on_hidden_supports, things_on_the_floor
@@ -63,7 +62,7 @@ class ThingDetector:
         for name, body in enumerate(bodies, start=1):
             mark(body.u, body.v, names, name)
         kept = dict(enumerate(bodies, start=1))
-        labels = (scene.labels, scene.overs_m, self.settings.core_m)
+        labels = (scene.labels, scene.overs_m, self.settings.core_m, scene.noise)
         for _ in range(2):
             attached = {
                 k: surroundings(b.u, b.v, scene.depth_m, names, k, *labels)[0]
@@ -80,10 +79,7 @@ class ThingDetector:
             yield body, attached[k]
 
     def _on_supports(self, scene: Scene) -> Iterator[Body]:
-        n = len(scene.supports.heights_m) + 1
-        u, v, starts = pixels_by_label(scene.pools, np.ones(n, np.bool_), np.ones(n, np.int64))
         groups: list[Body] = []
-        for k in np.flatnonzero(np.diff(starts) >= self.settings.min_pixels):
-            part = slice(int(starts[k]), int(starts[k + 1]))
-            groups += clusters_from_above(u[part], v[part], scene, int(k) - 1, self.settings)
+        for support, u, v in scene.on_each_support(self.settings.min_pixels):
+            groups += clusters_from_above(u, v, scene, support, self.settings)
         yield from split(groups, scene, scene.labels, self.settings.min_pixels)

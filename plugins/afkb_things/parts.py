@@ -31,6 +31,7 @@ def measures_of(
     depth_m: NDArray[np.float32],
     points: NDArray[np.float64],
     count: int,
+    noise: float,
 ) -> NDArray[np.float64]:
     """Of each part: pixels; sums of x, y, z, xx, xy, xz, yy, yz, zz, and noise; columns; lowest."""
     out = np.zeros((count + 1, 14))
@@ -44,7 +45,7 @@ def measures_of(
             for j in range(i, 3):
                 row[n] += points[k, i] * points[k, j]
                 n += 1
-        row[SIGMA] += depth_sigma(depth_m[k])
+        row[SIGMA] += noise * depth_sigma(depth_m[k])
         row[FIRST], row[LAST] = min(row[FIRST], u[k]), max(row[LAST], u[k])
         row[LOWEST] = min(row[LOWEST], points[k, 2])
     return out

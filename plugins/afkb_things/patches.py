@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
-from afkb_mapping.sensor_noise import depth_sigma
+from afkb_things.cells import step
 
-Box = tuple[int, int, int, int]
 LEAST_PIXELS = 12
 """A smooth patch of fewer cells may be noise."""
 EDGE = 1.0
@@ -19,126 +18,115 @@ NEIGHBOURS = ((0, 1), (1, 0), (0, -1), (-1, 0))
 @kernel
 def patches_of(
     depth_m: NDArray[np.float32],
-    pools: NDArray[np.int32],
-    pool: int,
     kinds: NDArray[np.int16],
     valley: NDArray[np.float32],
-    box: Box,
-    out: NDArray[np.int32],
-) -> int:
-    """Number the patches of a pool in `out` (H, W), from 1: connected, of one kind, no valley.
+    noise: float,
+) -> tuple[NDArray[np.int32], int]:
+    """Number the patches of a pool, from 1: (H, W), connected, of one kind, no valley; how many.
 
     What lies in a valley, or in a patch too small to tell, goes to the patch that reaches it first;
-    where none does, it makes one. Returns how many there are.
+    where none does, it makes one. `depth_m` is 0 off the pool.
     """
-    u0, v0, u1, v1 = box
-    queue = np.empty(((u1 - u0) * (v1 - v0), 2), np.int32)
+    rows, cols = depth_m.shape
+    out = np.zeros((rows, cols), np.int32)
+    queue = np.empty((rows * cols, 2), np.int32)
     count = filled = 0
     for smooth in (True, False):
-        for v in range(v0, v1):
-            for u in range(u0, u1):
-                if pools[v, u] != pool or out[v, u] != 0 or (smooth and valley[v, u] >= EDGE):
+        for v in range(rows):
+            for u in range(cols):
+                if depth_m[v, u] <= 0 or out[v, u] != 0 or (smooth and valley[v, u] >= EDGE):
                     continue
                 count += 1
-                first = start = filled
                 out[v, u] = count
                 queue[filled, 0], queue[filled, 1] = v, u
-                filled += 1
-                while first < filled:
-                    filled = _spread(
-                        depth_m, pools, kinds, valley, out, queue, first, filled, box, smooth
-                    )
-                    first += 1
+                start = filled
+                filled = _flood(depth_m, kinds, valley, noise, out, queue, start, start + 1, smooth)
                 if smooth and filled - start < LEAST_PIXELS:
                     for k in range(start, filled):
                         out[queue[k, 0], queue[k, 1]] = -1
                     filled = start
                     count -= 1
         if smooth:
-            for v in range(v0, v1):
-                for u in range(u0, u1):
-                    if pools[v, u] == pool and out[v, u] < 0:
-                        out[v, u] = 0
-            first = 0
-            while first < filled:
-                filled = _spread(
-                    depth_m, pools, kinds, valley, out, queue, first, filled, box, False
-                )
-                first += 1
-    return count
+            for v in range(rows):
+                for u in range(cols):
+                    out[v, u] = max(out[v, u], 0)
+            filled = _flood(depth_m, kinds, valley, noise, out, queue, 0, filled, False)
+    return out, count
 
 
 @kernel
-def _spread(
+def _flood(
     depth_m: NDArray[np.float32],
-    pools: NDArray[np.int32],
     kinds: NDArray[np.int16],
     valley: NDArray[np.float32],
+    noise: float,
     out: NDArray[np.int32],
     queue: NDArray[np.int32],
     first: int,
     filled: int,
-    box: Box,
     smooth: bool,
 ) -> int:
-    """Give a pixel's patch to its neighbours on the same surface: smooth ones, or valleys."""
-    u0, v0, u1, v1 = box
-    v, u = queue[first, 0], queue[first, 1]
-    z = depth_m[v, u]
-    jump = 0.015 + 3.0 * depth_sigma(z)
-    for dv, du in NEIGHBOURS:
-        b, a = v + dv, u + du
-        # a lost pixel or two don't part a surface
-        for _ in range(2):
-            if v0 <= b < v1 and u0 <= a < u1 and depth_m[b, a] <= 0:
-                b, a = b + dv, a + du
-        if not (v0 <= b < v1 and u0 <= a < u1) or out[b, a] != 0 or pools[b, a] != pools[v, u]:
-            continue
-        if abs(depth_m[b, a] - z) > jump:
-            continue
-        if smooth and (valley[b, a] >= EDGE or kinds[b, a] != kinds[v, u]):
-            continue
-        out[b, a] = out[v, u]
-        queue[filled, 0], queue[filled, 1] = b, a
-        filled += 1
+    """Give the patches of queued pixels to neighbours on the same surface: smooth ones, or all."""
+    rows, cols = depth_m.shape
+    while first < filled:
+        v, u = queue[first, 0], queue[first, 1]
+        first += 1
+        z, patch, kind = depth_m[v, u], out[v, u], kinds[v, u]
+        jump = step(z, noise)
+        for dv, du in NEIGHBOURS:
+            b, a = v + dv, u + du
+            # a lost pixel or two don't part a surface
+            for _ in range(2):
+                if 0 <= b < rows and 0 <= a < cols and depth_m[b, a] <= 0:
+                    b, a = b + dv, a + du
+            if not (0 <= b < rows and 0 <= a < cols) or out[b, a] != 0 or depth_m[b, a] <= 0:
+                continue
+            if abs(depth_m[b, a] - z) > jump:
+                continue
+            if smooth and (valley[b, a] >= EDGE or kinds[b, a] != kind):
+                continue
+            out[b, a] = patch
+            queue[filled, 0], queue[filled, 1] = b, a
+            filled += 1
     return filled
 
 
 @kernel
 def contacts(
     depth_m: NDArray[np.float32],
-    pools: NDArray[np.int32],
-    pool: int,
     patches: NDArray[np.int32],
     valley: NDArray[np.float32],
     count: int,
-    box: Box,
+    noise: float,
+    column: int,
 ) -> NDArray[np.float64]:
     """How the patches of a pool meet: (count + 1, count + 1, 5).
 
     Number of pixel pairs on one surface, the sum of the deeper one's valley over these (both
     symmetric), the number of pairs in which the first lies behind the second, and the first and
-    the last column of all pairs, the first as a negative number.
+    the last column of all pairs, the first as a negative number. Columns count from `column` on.
     """
-    u0, v0, u1, v1 = box
+    rows, cols = depth_m.shape
     out = np.zeros((count + 1, count + 1, 5))
     out[..., 3:] = -1e9
-    for v in range(v0, v1):
-        for u in range(u0, u1):
-            if pools[v, u] != pool:
-                continue
+    for v in range(rows):
+        for u in range(cols):
             p, z = patches[v, u], depth_m[v, u]
-            jump = 0.015 + 3.0 * depth_sigma(z)
+            if p == 0:
+                continue
             for dv, du in ((0, 1), (1, 0)):
                 b, a = v + dv, u + du
                 for _ in range(2):
-                    if b < v1 and a < u1 and depth_m[b, a] <= 0:
+                    if b < rows and a < cols and depth_m[b, a] <= 0:
                         b, a = b + dv, a + du
-                if b >= v1 or a >= u1 or pools[b, a] != pool or patches[b, a] == p:
+                if b >= rows or a >= cols or patches[b, a] == p or patches[b, a] == 0:
                     continue
-                q = patches[b, a]
+                q, jump = patches[b, a], step(z, noise)
                 for f, s in ((p, q), (q, p)):
-                    out[f, s, 3], out[f, s, 4] = max(out[f, s, 3], -u), max(out[f, s, 4], a)
+                    out[f, s, 3], out[f, s, 4] = (
+                        max(out[f, s, 3], -u - column),
+                        max(out[f, s, 4], a + column),
+                    )
                 if depth_m[b, a] > z + jump:
                     out[q, p, 2] += 1
                 elif depth_m[b, a] < z - jump:

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.bodies import Body
+from afkb_mapping.depth_points import points_of_row
 from afkb_mapping.from_above import hull_candidates
 from afkb_mapping.kernels import kernel
 from afkb_mapping.opening_kernels import border_lines
 from afkb_mapping.openings import find_opening
 from afkb_mapping.order_statistics import percentile
-from afkb_mapping.sensor_noise import depth_sigma
+from afkb_things.cells import step
 from afkb_things.scene import Scene
 from afkb_things.surroundings import mark
 
@@ -31,6 +32,8 @@ LEAST_BEHIND = 5
 OUTLINE_M, OUTLINE_SHARE = 0.010, 0.85
 """So near to the outline of both parts, seen from above, must such a share of their sides lie."""
 BELOW_TOP_M = 0.02
+SAMPLES = 2000
+"""About so many points say how high a top is."""
 SEEN_THROUGH = 20
 """Pixels of the support between two parts that show that nothing joins them."""
 
@@ -42,10 +45,10 @@ def rejoined(bodies: Sequence[Body], scene: Scene) -> list[Body]:
     names = np.zeros(scene.depth_m.shape, np.int32)
     for name, body in enumerate(bodies, start=1):
         mark(body.u, body.v, names, name)
-    behind = _behind(scene.depth_m, names, len(bodies), around(bodies))
+    behind = _behind(scene.depth_m, names, len(bodies), around(bodies), scene.noise)
     taken = names > 0
     kept = [_filled(body, scene, taken) for body in bodies]
-    tops = [percentile(body.points[:, 2], 98.0) for body in bodies]
+    tops = [_top_m(body) for body in bodies]
     for a in range(len(kept)):
         for b in range(a + 1, len(kept)):
             first, second = kept[a], kept[b]
@@ -87,6 +90,10 @@ def around(bodies: Sequence[Body]) -> tuple[int, int, int, int]:
     return int(u0), int(v0), int(u1), int(v1)
 
 
+def _top_m(body: Body) -> float:
+    return percentile(body.points[:: max(1, len(body.points) // SAMPLES), 2], 98.0)
+
+
 def _touch(a: Body, b: Body) -> bool:
     """Whether, seen from above, the rectangles around both come near each other."""
     low = np.maximum(a.points[:, :2].min(axis=0), b.points[:, :2].min(axis=0))
@@ -121,9 +128,16 @@ def _seen_down(
     scene: Scene, taken: NDArray[np.bool_], body: Body, hull: Hull
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """Pixels that aren't taken, whose sight lines come down through a body's top within a hull."""
-    margin, top = OUTLINE_M + 2.0 * body.sigma_m, percentile(body.points[:, 2], 98.0)
+    margin, top = OUTLINE_M + 2.0 * body.sigma_m, _top_m(body)
     return _through(
-        scene.points, scene.depth_m, taken, body.image_box, *hull, margin, scene.camera_xyz, top
+        scene.depth_m,
+        scene.intrinsics,
+        scene.T_map_camera,
+        taken,
+        body.image_box,
+        *hull,
+        margin,
+        top,
     )
 
 
@@ -148,7 +162,7 @@ def _one(a: Body, b: Body, scene: Scene) -> Body | None:
     both = _both(a, b)
     hull = _hull(both)
     margin = OUTLINE_M + 2.0 * both.sigma_m
-    top = percentile(both.points[:, 2], 98.0) - BELOW_TOP_M
+    top = _top_m(both) - BELOW_TOP_M
     if min(_share_on(p.points, top, *hull, margin) for p in (a, b)) < OUTLINE_SHARE:
         return None
     u, _ = _seen_down(scene, scene.labels >= 0, both, hull)
@@ -186,14 +200,14 @@ def _inwards(
 
 @kernel
 def _through(
-    points: NDArray[np.float32],
     depth_m: NDArray[np.float32],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
     taken: NDArray[np.bool_],
     box: tuple[int, int, int, int],
     normals: NDArray[np.float64],
     offsets: NDArray[np.float64],
     margin: float,
-    camera_xyz: NDArray[np.float64],
     top_m: float,
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """Columns and rows of pixels that aren't taken and seen through an outline at a height.
@@ -203,16 +217,18 @@ def _through(
     u0, v0, u1, v1 = box
     us = np.empty((u1 - u0) * (v1 - v0), np.int32)
     vs = np.empty_like(us)
-    n, drop = 0, camera_xyz[2] - top_m
-    for v in range(v0, v1):
+    cx, cy, ch = T_map_camera[0, 3], T_map_camera[1, 3], T_map_camera[2, 3]
+    row, n, drop = np.empty((3, depth_m.shape[1]), np.float32), 0, ch - top_m
+    for v in range(v0, v1 if drop > 0 else v0):
+        points_of_row(depth_m, v, intrinsics, T_map_camera, row, u0, u1)
         for u in range(u0, u1):
-            if taken[v, u] or depth_m[v, u] <= 0 or drop <= 0:
+            if taken[v, u] or depth_m[v, u] <= 0:
                 continue
-            x, y, h = points[v, u]
+            x, y, h = row[0, u], row[1, u], row[2, u]
             if h >= top_m or _inwards(x, y, normals, offsets) <= margin:
                 continue
-            t = drop / (camera_xyz[2] - h)
-            x, y = camera_xyz[0] + (x - camera_xyz[0]) * t, camera_xyz[1] + (y - camera_xyz[1]) * t
+            t = drop / (ch - h)
+            x, y = cx + (x - cx) * t, cy + (y - cy) * t
             if _inwards(x, y, normals, offsets) > margin:
                 us[n], vs[n] = u, v
                 n += 1
@@ -225,6 +241,7 @@ def _behind(
     names: NDArray[np.int32],
     count: int,
     box: tuple[int, int, int, int],
+    noise: float,
 ) -> NDArray[np.int64]:
     """In how many pixel pairs of a box body p lies behind its neighbour q: (count, count)."""
     rows, cols = names.shape
@@ -244,6 +261,6 @@ def _behind(
                 if not (0 <= b < rows and 0 <= a < cols):
                     continue
                 q = names[b, a]
-                if q != 0 and q != p and depth_m[b, a] < z - 0.015 - 3.0 * depth_sigma(z):
+                if q != 0 and q != p and depth_m[b, a] < z - step(z, noise):
                     out[p - 1, q - 1] += 1
     return out

@@ -54,26 +54,3 @@ def roots_of(
                 roots[k] = roots[j]
                 break
     return roots
-
-
-@kernel
-def over_roots(
-    labels: NDArray[np.int16],
-    overs_m: NDArray[np.float32],
-    points: NDArray[np.float32],
-    planes: NDArray[np.float64],
-    origin_xy: NDArray[np.float64],
-    roots: NDArray[np.int64],
-) -> NDArray[np.int16]:
-    """Labels (H, W) of what carries each pixel at last; heights become those over it, in place."""
-    out = labels.copy()
-    for v in range(labels.shape[0]):
-        for u in range(labels.shape[1]):
-            k = labels[v, u] - 1
-            if k < 0 or roots[k] == k:
-                continue
-            x, y = points[v, u, 0] - origin_xy[0], points[v, u, 1] - origin_xy[1]
-            plane = planes[roots[k]]
-            out[v, u] = roots[k] + 1
-            overs_m[v, u] = points[v, u, 2] - (plane[0] * x + plane[1] * y + plane[2])
-    return out

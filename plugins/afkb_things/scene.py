@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
-from afkb_mapping.depth_points import height_per_depth, intrinsics_of, map_points
-from afkb_mapping.kernels import kernel
+from afkb_mapping.depth_points import height_per_depth, intrinsics_of, points_at
+from afkb_mapping.image_regions import order_by_label
+from afkb_mapping.view_noise import noise_scale
 from afkb_things.above import fit_supports, label_things
-from afkb_things.roots import over_roots, roots_of
+from afkb_things.roots import roots_of
 from afkb_things.settings import ThingSettings
 from afkb_things.supports import Supports
 
@@ -24,21 +25,20 @@ THIN = 3
 class Scene:
     """A view, labelled.
 
-    - `points`: (H, W, 3) float32, map frame. `labels`: (H, W), see `label_things`.
-    - `pools`: (H, W), the same with those supports left out that are the tops of things themselves;
-      `overs_m`: (H, W), height of a point over the support of its pool.
+    - `labels`, `overs_m` (H, W), and `standing` (columns, rows, supports): see `label_things`.
     - `intrinsics`: fx, fy, cx, cy. `planes`: (K, 3), see `fit_supports`.
+    - `noise`: how many times noisier than the sensor's model the view is.
     """
 
     depth_m: NDArray[np.float32]
     intrinsics: NDArray[np.float64]
     T_map_camera: NDArray[np.float64]
-    points: NDArray[np.float32]
     supports: Supports
     planes: NDArray[np.float64]
     labels: NDArray[np.int16]
-    pools: NDArray[np.int16]
     overs_m: NDArray[np.float32]
+    standing: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]
+    noise: float
 
     @property
     def camera_xyz(self) -> NDArray[np.float64]:
@@ -49,7 +49,18 @@ class Scene:
         self, u: NDArray[np.int32], v: NDArray[np.int32]
     ) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
         """Depths (N,) and points (N, 3), map frame, of pixels."""
-        return _taken(u, v, self.depth_m, self.points)
+        return points_at(u, v, self.depth_m, self.intrinsics, self.T_map_camera)
+
+    def on_each_support(
+        self, at_least: int
+    ) -> Iterator[tuple[int, NDArray[np.int32], NDArray[np.int32]]]:
+        """Each support that carries so many pixels, and their columns and rows, by rows."""
+        u, v, supports = self.standing
+        wanted = np.ones(len(self.planes), np.bool_)
+        order, starts = order_by_label(supports, wanted)
+        for k in np.flatnonzero(np.diff(starts) >= at_least):
+            own = order[starts[k] : starts[k + 1]]
+            yield int(k), u[own], v[own]
 
     def slope_under(self, support: int) -> tuple[float, float, float]:
         """What a support's fitted plane rises above its height per metre of x, of y, and at all."""
@@ -63,33 +74,16 @@ class Scene:
         if view.depth_m is None or view.camera is None:
             return None
         intrinsics, T = intrinsics_of(view), view.T_map_camera
-        supports = Supports.of(earlier)
-        grid = (supports.raster, supports.origin_xy)
+        noise = noise_scale(view.depth_m)
+        s = Supports.of(earlier, T[:3, 3].copy(), noise)
+        grid = (s.raster, s.origin_xy)
         coarse = np.ascontiguousarray(view.depth_m[::THIN, ::THIN])
-        sparse = map_points(coarse, intrinsics / THIN, T)
-        planes = fit_supports(coarse, sparse, supports.heights_m, *grid)
+        planes = fit_supports(coarse, intrinsics / THIN, T, s.heights_m, *grid)
+        roots = roots_of(s.heights_m, s.areas_m2, s.large, s.raster, settings.above_m[1])
         slope = height_per_depth(intrinsics, T)
-        points, labels, overs = label_things(
-            view.depth_m, intrinsics, T, planes, supports.large, *grid, slope, *settings.above_m
-        )
-        roots = roots_of(
-            supports.heights_m, supports.areas_m2, supports.large, supports.raster,
-            settings.above_m[1],
+        labels, overs, *standing = label_things(
+            view.depth_m, intrinsics, T, planes, s.large, roots, *grid, slope,
+            *settings.above_m, noise,
         )  # fmt: skip
-        pools = over_roots(labels, overs, points, planes, supports.origin_xy, roots)
-        return cls(view.depth_m, intrinsics, T, points, supports, planes, labels, pools, overs)
-
-
-@kernel
-def _taken(
-    u: NDArray[np.int32],
-    v: NDArray[np.int32],
-    depth_m: NDArray[np.float32],
-    points: NDArray[np.float32],
-) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
-    depths, xyz = np.empty(len(u), np.float32), np.empty((len(u), 3))
-    for n in range(len(u)):
-        depths[n] = depth_m[v[n], u[n]]
-        for k in range(3):
-            xyz[n, k] = points[v[n], u[n], k]
-    return depths, xyz
+        u, v, on = standing
+        return cls(view.depth_m, intrinsics, T, s, planes, labels, overs, (u, v, on), noise)

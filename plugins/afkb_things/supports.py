@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,6 +14,7 @@ from afkb.flow import Detection
 from afkb_mapping.bodies import supports_among
 from afkb_mapping.from_above import hull_candidates
 from afkb_mapping.kernels import kernel
+from afkb_mapping.sensor_noise import depth_sigma
 
 RASTER_M = 0.02
 HULL_MARGIN_CELLS = 1
@@ -20,7 +22,7 @@ LARGE_SUPPORT_M2 = 0.12
 WALL_BIT = np.uint64(63)
 WALL_HEIGHT_M, WALL_LENGTH_M = 1.0, 1.0
 WALL_RMS_M = 0.05
-WALL_CELLS = 3
+WALL_SIGMAS = 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,22 +40,28 @@ class Supports:
     origin_xy: NDArray[np.float64]
 
     @classmethod
-    def of(cls, earlier: Sequence[Detection]) -> Supports:
-        """The supports among a view's detections, the floor left out."""
+    def of(
+        cls, earlier: Sequence[Detection], camera_xyz: NDArray[np.float64], noise: float
+    ) -> Supports:
+        """The supports among a view's detections, the floor left out.
+
+        The depth of a view from `camera_xyz` is `noise` times as noisy as the sensor's model says.
+        """
         chosen = supports_among(earlier)
         heights = np.array([float(d.position_xyz[2]) for d in chosen])
         areas = np.array([d.measures.get("area", 0.0) for d in chosen])
-        raster, origin = _raster(chosen, earlier)
         walls = [d.segment_xy for d in earlier if d.segment_xy is not None and _is_wall(d)]
-        _mark_walls(raster, origin, walls)
+        raster, origin = _raster(chosen, walls)
+        for segment in walls:
+            _mark_wall(raster, origin, segment, camera_xyz, noise)
         return cls(tuple(chosen), heights, areas, areas >= LARGE_SUPPORT_M2, raster, origin)
 
 
 def _raster(
-    chosen: Sequence[Detection], earlier: Sequence[Detection]
+    chosen: Sequence[Detection], walls_xy: Sequence[NDArray[np.float64]]
 ) -> tuple[NDArray[np.uint64], NDArray[np.float64]]:
-    """Supports' hulls as bits of a grid that reaches as far as anything that was detected."""
-    reach = [d.footprint_xy for d in earlier if len(d.footprint_xy)]
+    """Supports' hulls as bits of a grid that reaches as far as they and the walls do."""
+    reach = [*(d.footprint_xy for d in chosen), *walls_xy]
     if not reach:
         return np.zeros((1, 1), np.uint64), np.zeros(2)
     pad = (HULL_MARGIN_CELLS + 2) * RASTER_M
@@ -81,17 +89,32 @@ def _is_wall(bound: Detection) -> bool:
     return large and bound.measures.get("rms", 0.0) < WALL_RMS_M
 
 
-def _mark_walls(
+@kernel
+def _mark_wall(
     raster: NDArray[np.uint64],
-    origin: NDArray[np.float64],
-    segments_xy: Sequence[NDArray[np.float64]],
+    origin_xy: NDArray[np.float64],
+    ends_xy: NDArray[np.float64],
+    camera_xyz: NDArray[np.float64],
+    noise: float,
 ) -> None:
-    """Set the wall bit where upright planes stand, so that they aren't things on a support."""
-    mask = np.zeros(raster.shape, np.uint8)
-    for segment in segments_xy:
-        ends = np.floor((segment - origin) / RASTER_M).astype(int)[:, ::-1]
-        cv2.line(mask, tuple(ends[0].tolist()), tuple(ends[1].tolist()), 1, WALL_CELLS)
-    _set_bit(raster, mask, WALL_BIT)
+    """Set the wall bit where an upright plane stands, so that it isn't a thing on a support.
+
+    As far to either side as noise may put what is seen of it: noise goes along sight lines.
+    """
+    along = ends_xy[1] - ends_xy[0]
+    length = max(math.hypot(along[0], along[1]), RASTER_M)
+    steps = int(length / (0.5 * RASTER_M)) + 1
+    for n in range(steps + 1):
+        x, y = ends_xy[0, 0] + along[0] * n / steps, ends_xy[0, 1] + along[1] * n / steps
+        to_x, to_y = x - camera_xyz[0], y - camera_xyz[1]
+        far = max(math.hypot(to_x, to_y), RASTER_M)
+        facing = abs(to_x * along[1] - to_y * along[0]) / (far * length)
+        off = WALL_SIGMAS * noise * depth_sigma(far) * facing
+        reach = 1 + int(off / RASTER_M)
+        i, j = int((x - origin_xy[0]) / RASTER_M), int((y - origin_xy[1]) / RASTER_M)
+        for a in range(max(i - reach, 0), min(i + reach + 1, raster.shape[0])):
+            for b in range(max(j - reach, 0), min(j + reach + 1, raster.shape[1])):
+                raster[a, b] |= np.uint64(1) << WALL_BIT
 
 
 @kernel

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
-from afkb_mapping.sensor_noise import depth_sigma
+from afkb_things.cells import step
 
 
 @kernel
@@ -19,6 +19,7 @@ def surroundings(
     labels: NDArray[np.int16],
     overs_m: NDArray[np.float32],
     core_m: float,
+    noise: float,
 ) -> tuple[float, float, float, float]:
     """What a thing's outline borders on: shares of attached, behind it, before it, missing.
 
@@ -30,8 +31,15 @@ def surroundings(
     rows, cols = depth_m.shape
     attached = behind = before = missing = total = 0
     for k in range(len(u)):
-        z = depth_m[v[k], u[k]]
-        jump = 0.015 + 3.0 * depth_sigma(z)
+        r, c = v[k], u[k]
+        if (
+            0 < r < rows - 1
+            and 0 < c < cols - 1
+            and names[r - 1, c] == names[r + 1, c] == names[r, c - 1] == names[r, c + 1] == name
+        ):
+            continue
+        z = depth_m[r, c]
+        jump = step(z, noise)
         for du, dv in ((1, 0), (-1, 0), (0, 1), (0, -1)):
             i, j = v[k] + dv, u[k] + du
             if 0 <= i < rows and 0 <= j < cols and names[i, j] == name:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
 from afkb_mapping.sensor_noise import depth_sigma
+from afkb_things.cells import step
 
 ARM_M = 0.010
 """Half of the width over which an edge is looked for, m, where noise doesn't ask for more."""
@@ -32,15 +33,15 @@ DIRECTIONS = ((0, 1), (1, 0), (1, 1), (1, -1))
 @kernel
 def valleys(
     depth_m: NDArray[np.float32],
-    pools: NDArray[np.int32],
     focal_px: float,
+    noise: float,
 ) -> NDArray[np.float32]:
     """How deep a valley each pixel lies in: (H, W), 1 where it is an edge, below 0 on ridges.
 
-    `pools` (H, W) is above 0 where something stands; only pixels of one pool are compared.
+    `depth_m` (H, W) is 0 where nothing of what stands together is seen.
     """
-    rows, cols = pools.shape
-    means = _inverse_means(depth_m, pools)
+    rows, cols = depth_m.shape
+    means = _inverse_means(depth_m, noise)
     out = np.zeros(depth_m.shape, np.float32)
     for v in range(rows):
         for u in range(cols):
@@ -48,13 +49,13 @@ def valleys(
             if here <= 0:
                 continue
             z = 1.0 / here
-            arm = max(ARM_M, ARM_SIGMAS * depth_sigma(z))
+            arm = max(ARM_M, ARM_SIGMAS * noise * depth_sigma(z))
             px = int(min(max(round(arm * focal_px / z), LEAST_ARM_PX), MOST_ARM_PX))
             arm = px * z / focal_px
             deepest = -1e9
             for dv, du in DIRECTIONS:
                 far = arm * (math.sqrt(2.0) if du != 0 and dv != 0 else 1.0)
-                rise = _second_difference(means, pools, u, v, du * px, dv * px, far)
+                rise = _second_difference(means, u, v, du * px, dv * px, far)
                 deepest = max(deepest, rise * z * z / (STEEPNESS * far))
             out[v, u] = deepest if deepest > -1e8 else 0.0
     return out
@@ -63,7 +64,6 @@ def valleys(
 @kernel
 def _second_difference(
     means: NDArray[np.float32],
-    pools: NDArray[np.int32],
     u: int,
     v: int,
     du: int,
@@ -71,12 +71,10 @@ def _second_difference(
     arm_m: float,
 ) -> float:
     """Mean of two means to either side less that in the middle, 1/m; -1e9 where one is lost."""
-    rows, cols = pools.shape
+    rows, cols = means.shape
     a, b = u + du, v + dv
     c, d = u - du, v - dv
     if min(a, c) < 0 or max(a, c) >= cols or min(b, d) < 0 or max(b, d) >= rows:
-        return -1e9
-    if pools[b, a] != pools[v, u] or pools[d, c] != pools[v, u]:
         return -1e9
     first, second, here = means[b, a], means[d, c], means[v, u]
     if first <= 0 or second <= 0:
@@ -87,21 +85,21 @@ def _second_difference(
 
 
 @kernel
-def _inverse_means(depth_m: NDArray[np.float32], pools: NDArray[np.int32]) -> NDArray[np.float32]:
-    """Mean inverse depth (H, W) of each pixel's square in its pool, 1/m; 0 where there is none."""
-    rows, cols = pools.shape
+def _inverse_means(depth_m: NDArray[np.float32], noise: float) -> NDArray[np.float32]:
+    """Mean inverse depth (H, W) of each pixel's square, 1/m; 0 where there is none."""
+    rows, cols = depth_m.shape
     out = np.zeros(depth_m.shape, np.float32)
     for v in range(rows):
         for u in range(cols):
-            pool, z = pools[v, u], depth_m[v, u]
-            if pool <= 0 or z <= 0:
+            z = depth_m[v, u]
+            if z <= 0:
                 continue
-            near = 0.015 + 3.0 * depth_sigma(z)
+            near = step(z, noise)
             total, count = 0.0, 0
             for b in range(max(v - SMOOTHED, 0), min(v + SMOOTHED + 1, rows)):
                 for a in range(max(u - SMOOTHED, 0), min(u + SMOOTHED + 1, cols)):
                     other = depth_m[b, a]
-                    if pools[b, a] == pool and abs(other - z) < near:
+                    if other > 0 and abs(other - z) < near:
                         total, count = total + 1.0 / other, count + 1
             if count >= 2:
                 out[v, u] = total / count

@@ -26,24 +26,22 @@ def two_planes(turn: float) -> np.ndarray:
 @pytest.mark.parametrize("slant", [0.0, 2.0])
 def test_a_plane_is_no_valley_however_it_slants(slant: float) -> None:
     depth = (0.8 / (1 + slant * (np.arange(80) - 40) / FOCAL)).astype(np.float32)
-    flat = valleys(np.tile(depth, (60, 1)), np.ones((60, 80), np.int32), FOCAL)
+    flat = valleys(np.tile(depth, (60, 1)), FOCAL, 1.0)
     assert np.abs(flat[10:-10, 10:-10]).max() < 0.05
 
 
 def test_a_concave_edge_is_a_valley_and_a_convex_one_isnt() -> None:
-    pools = np.ones((60, 80), np.int32)
-    assert valleys(two_planes(1.0), pools, FOCAL)[30, 39:41].min() > 1
-    assert valleys(two_planes(-1.0), pools, FOCAL)[30, 39:41].max() < 0.5
+    assert valleys(two_planes(1.0), FOCAL, 1.0)[30, 39:41].min() > 1
+    assert valleys(two_planes(-1.0), FOCAL, 1.0)[30, 39:41].max() < 0.5
 
 
 def test_patches_part_at_a_valley_and_meet_there() -> None:
-    depth, pools = two_planes(1.0), np.ones((60, 80), np.int32)
-    valley = valleys(depth, pools, FOCAL)
-    patches = np.zeros_like(pools)
-    box = (0, 0, 80, 60)
-    assert patches_of(depth, pools, 1, np.ones((60, 80), np.int16), valley, box, patches) == 2
+    depth = two_planes(1.0)
+    valley = valleys(depth, FOCAL, 1.0)
+    patches, count = patches_of(depth, np.ones((60, 80), np.int16), valley, 1.0)
+    assert count == 2
     assert (patches > 0).all()
-    meet = contacts(depth, pools, 1, patches, valley, 2, box)
+    meet = contacts(depth, patches, valley, 2, 1.0, 0)
     assert meet[1, 2, 0] == 60
     assert meet[1, 2, 1] / 60 > 1
 
