@@ -245,14 +245,30 @@ def _of_part(
     low_m: float,
     high_m: float,
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32]]:
-    """Columns, rows and heights of all pixels of a part of a grid, within an image box."""
+    """Columns, rows and heights of all pixels of a part of a grid, within an image box.
+
+    A part is known by one pixel of each cell: what lies in the next square is of it, too.
+    """
     rows, cols = depth_m.shape
     within = (max(box[0], 0), max(box[1], 0), min(box[2], cols), min(box[3], rows))
     u, v, heights, ij = _loose(depth_m, labels, intrinsics, T_map_camera, within, 1, low_m, high_m)
     n = 0
     for k in range(len(u)):
         i, j = ij[k, 0] - i0, ij[k, 1] - j0
-        if 0 <= i < parts.shape[0] and 0 <= j < parts.shape[1] and parts[i, j] == part:
+        if _near(parts, part, i, j):
             u[n], v[n], heights[n] = u[k], v[k], heights[k]
             n += 1
     return u[:n], v[:n], heights[:n]
+
+
+@kernel
+def _near(parts: NDArray[np.int32], part: int, i: int, j: int) -> bool:
+    """Whether a square or one next to it is of a part."""
+    rows, cols = parts.shape
+    if 0 <= i < rows and 0 <= j < cols and parts[i, j] > 0:
+        return bool(parts[i, j] == part)
+    for a in range(max(i - 1, 0), min(i + 2, rows)):
+        for b in range(max(j - 1, 0), min(j + 2, cols)):
+            if parts[a, b] == part:
+                return True
+    return False

@@ -13,6 +13,8 @@ from afkb_mapping.sensor_noise import depth_sigma
 SMOOTH = 0.5
 """Mean depth of the valley in which two patches meet, below which they are of one body."""
 LEAST_CONTACT = 3
+STRAYS = 12
+"""Fewer pixels may be noise."""
 BODY_M = (0.04, 0.025)
 """Length and middle side from which a part is a body of its own; caps, knobs and handles aren't."""
 STEM = 0.10
@@ -102,14 +104,22 @@ class Parts:
             self.join(int(a), int(b))
 
     def join_small(self) -> None:
-        """What is too small for a body belongs to what it touches most, or else to the nearest."""
+        """What is too small for a body belongs to what it touches most, or else to the nearest.
+
+        Strays that touch nothing are noise, and belong to nothing.
+        """
         for k in sorted(self.kept, key=lambda k: float(self.measures[k, COUNT])):
             if len(self.kept) == 1 or self._is_body(k):
                 continue
             near = self.meet[k, :, TOUCH] + 0.01 * (
                 self.meet[k, :, BEHIND] + self.meet[:, k, BEHIND]
             )
-            self.join(int(near.argmax()) if near.max() > 0 else self._nearest(k), k)
+            if near.max() > 0:
+                self.join(int(near.argmax()), k)
+            elif self.measures[k, COUNT] < STRAYS:
+                self.kept.remove(k)
+            else:
+                self.join(self._nearest(k), k)
 
     def _is_body(self, k: int) -> bool:
         if self.measures[k, COUNT] < self.min_pixels:
@@ -134,8 +144,9 @@ class Parts:
                 continue
             behind = self.meet[k, :, BEHIND] + self.meet[:, k, BEHIND]
             beside = self.meet[k, :, TOUCH] + behind
-            standing = [j for j in self.kept if beside[j] > 0 and not self._floats(j)]
-            behind[standing] = 0
+            below = [j for j in self.kept if beside[j] > 0]
+            standing = [j for j in below if not self._floats(j)] or below
+            behind[[j for j in standing if not self._floats(j)]] = 0
             if len(standing) == 1 and self._is_head(k, standing[0]):
                 self.join(standing[0], k)
             elif self.meet[k, :, TOUCH].max() < LEAST_CONTACT and behind.max() >= LEAST_CONTACT:

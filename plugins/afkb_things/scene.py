@@ -17,6 +17,8 @@ from afkb_things.roots import roots_of
 from afkb_things.settings import ThingSettings
 from afkb_things.supports import Supports
 
+MODEL_WITHIN = 1.25
+"""A view is as noisy as the sensor's model says, to within such a factor."""
 THIN = 3
 """Every such row and column of the image says how a support slopes."""
 
@@ -74,7 +76,7 @@ class Scene:
         if view.depth_m is None or view.camera is None:
             return None
         intrinsics, T = intrinsics_of(view), view.T_map_camera
-        noise = noise_scale(view.depth_m)
+        noise = max(1.0, noise_scale(view.depth_m) / MODEL_WITHIN)
         s = Supports.of(earlier, T[:3, 3].copy(), noise)
         grid = (s.raster, s.origin_xy)
         coarse = np.ascontiguousarray(view.depth_m[::THIN, ::THIN])
