@@ -45,34 +45,6 @@ def points_at(
     return depths, points
 
 
-@kernel
-def map_points(
-    depth_m: NDArray[np.float32],
-    intrinsics: NDArray[np.float64],
-    T_map_camera: NDArray[np.float64],
-) -> NDArray[np.float32]:
-    """Points of a depth image in the map frame: (H, W, 3) float32; zero where nothing returned."""
-    fx, fy, cx, cy = intrinsics
-    T = T_map_camera
-    height, width = depth_m.shape
-    along_row = np.empty((width, 3))
-    for u in range(width):
-        for k in range(3):
-            along_row[u, k] = T[k, 0] * ((u - cx) / fx)
-    out = np.empty((height, width, 3), np.float32)
-    for v in range(height):
-        y = (v - cy) / fy
-        ax, ay, az = T[0, 1] * y, T[1, 1] * y, T[2, 1] * y
-        for u in range(width):
-            z = depth_m[v, u]
-            seen = z > 0
-            x, y_, h = along_row[u, 0] + ax, along_row[u, 1] + ay, along_row[u, 2] + az
-            out[v, u, 0] = (x + T[0, 2]) * z + T[0, 3] if seen else 0.0
-            out[v, u, 1] = (y_ + T[1, 2]) * z + T[1, 3] if seen else 0.0
-            out[v, u, 2] = (h + T[2, 2]) * z + T[2, 3] if seen else 0.0
-    return out
-
-
 def height_per_depth(
     intrinsics: NDArray[np.float64], T_map_camera: NDArray[np.float64]
 ) -> NDArray[np.float64]:

@@ -24,6 +24,8 @@ DENT = (0.05, 0.10)
 """Depth seen over the height of a thing: less is a dent in the top of something tall."""
 RIM_SHARE = (0.5, 0.8)
 INSIDE_SHARE = 0.15
+DEEP_SIGMAS = 2.5
+"""What seems less deep than so many times the noise is the lowest that noise puts on a flat top."""
 SIGHT_SHARE = 0.6
 """Share of what a sight line could show of an opening, from which it is taken for deep."""
 
@@ -66,6 +68,8 @@ def _open(stand: Stand, looks: Looks, settings: ContainerSettings) -> float:
     """How much an opening is one that holds something."""
     opening = looks.opening
     if opening is None or opening.rim_share < RIM_SHARE[0]:
+        return 0.0
+    if opening.depth_m < DEEP_SIGMAS * looks.noise.sigma_m:
         return 0.0
     deep = membership(opening.depth_m / opening.width_m, settings.depth_over_opening)
     if opening.sight_share >= SIGHT_SHARE:

@@ -10,7 +10,7 @@ from afkb_containers.noise import noise_of, noise_scale
 from afkb_containers.silhouette import silhouette_of
 from afkb_containers.spread import Spread, spread_of
 from afkb_mapping.bodies import Body, Stand
-from afkb_mapping.depth_points import map_points
+from afkb_mapping.depth_points import points_of_row
 from afkb_mapping.from_above import sides_from_above
 from afkb_mapping.opening_kernels import border_lines, within
 from afkb_things.above import fit_supports
@@ -22,25 +22,39 @@ TURN = cv2.Rodrigues(np.array([2.2, 0.1, 0.05]))[0]
 T_MAP_CAMERA = np.block([[TURN, np.array([[0.4], [0.2], [1.3]])], [np.zeros((1, 3)), np.eye(1)]])
 
 
+def map_points(depth_m: np.ndarray) -> np.ndarray:
+    """(H, W, 3) float32, map frame."""
+    row, points = np.empty((3, depth_m.shape[1]), np.float32), np.empty((*depth_m.shape, 3))
+    for v in range(len(depth_m)):
+        points_of_row(depth_m, v, INTRINSICS, T_MAP_CAMERA, row, 0, depth_m.shape[1])
+        points[v] = row.T
+    return points
+
+
 def test_points_of_a_depth_image_are_those_of_the_pinhole_camera() -> None:
     depth_m = RNG.uniform(0.5, 4.0, (48, 64)).astype(np.float32)
-    depth_m[10:12, 5:9] = 0
     v, u = np.mgrid[:48, :64]
     fx, fy, cx, cy = INTRINSICS
     rays = np.stack([(u - cx) / fx, (v - cy) / fy, np.ones_like(u)], axis=-1)
     expected = (rays * depth_m[..., None]) @ TURN.T + T_MAP_CAMERA[:3, 3]
-    expected[depth_m == 0] = 0
-    assert map_points(depth_m, INTRINSICS, T_MAP_CAMERA) == pytest.approx(expected, abs=1e-5)
+    assert map_points(depth_m) == pytest.approx(expected, abs=1e-5)
 
 
 def test_a_tilted_support_is_fitted_by_least_squares() -> None:
-    points = np.zeros((60, 60, 3), np.float32)
-    points[..., :2] = RNG.uniform(0, 1, (60, 60, 2))
-    points[..., 2] = 0.7 + 0.005 * (points[..., 0] - 0.5)
-    raster = np.ones((int(1 / RASTER_M) + 2,) * 2, np.uint64)
-    depth_m = np.ones((60, 60), np.float32)
-    (plane,) = fit_supports(depth_m, points, np.array([0.7]), raster, np.zeros(2))
-    x, y = points[..., 0], points[..., 1]
+    u, v = np.meshgrid(np.arange(64), np.arange(48))
+    rays = np.stack([(u - 31.5) / 60, (v - 23.5) / 61, np.ones_like(u)], axis=-1) @ TURN.T
+    low = np.array([0.2, -0.5, 0.7])  # it rises by 5 mm per metre of x
+    up = np.array([-0.005, 0.0, 1.0])
+    depth_m = ((low - T_MAP_CAMERA[:3, 3]) @ up / (rays @ up)).astype(np.float32)
+    points = map_points(depth_m)
+    origin = points[..., :2].reshape(-1, 2).min(axis=0).astype(float)
+    raster = np.ones(
+        np.ceil(np.ptp(points[..., :2], axis=(0, 1)) / RASTER_M).astype(int), np.uint64
+    )
+    heights = np.array([0.7])
+    (plane,) = fit_supports(depth_m, INTRINSICS, T_MAP_CAMERA, heights, raster, origin)
+    assert plane[:2] == pytest.approx([0.005, 0.0], abs=2e-4)
+    x, y = points[..., 0] - origin[0], points[..., 1] - origin[1]
     assert plane[0] * x + plane[1] * y + plane[2] == pytest.approx(points[..., 2], abs=2e-4)
 
 
