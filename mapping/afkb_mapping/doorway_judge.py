@@ -11,7 +11,7 @@ from afkb.flow import OccupancyGrid
 from afkb_mapping.bounds import WALL_M
 from afkb_mapping.detour import room_to_room, way_free
 from afkb_mapping.free_space import OCCUPIED_ABOVE
-from afkb_mapping.straight_runs import runs_m
+from afkb_mapping.straight_runs import runs_m, thickness_m
 from afkb_mapping.upright_cells import UprightCells
 
 Array = NDArray[np.float64]
@@ -27,6 +27,9 @@ KNEE_JAMB, MOSTLY = 0.2, 0.5
 WALL_BESIDE_M = (WALL_M - 0.2, WALL_M)
 """At least one jamb is of a wall: straight and tall for as long as the second. What is no longer
 than the first is a cabinet's or a refrigerator's side, or the picture that hangs there."""
+WALL_THICK_M = (0.5, 0.75)
+"""At least one jamb is as deep as a wall is thick, and noise blurs; between what is deeper on both
+sides, as wardrobes are, one walks along an aisle."""
 OBSTRUCTED = (0.1, 0.4)
 """Share of the line between the jambs, on which something stands: a door leaf, or a shelf."""
 FAINT = 0.05
@@ -63,6 +66,7 @@ class DoorwayJudge:
         p *= 1 - ramp(self._stands_between(jambs_xy), *OBSTRUCTED)
         if p >= FAINT and not any(map(math.isnan, tall)):
             p *= ramp(max(runs_m(self._tall, jambs_xy, self._grid)), *WALL_BESIDE_M)
+            p *= 1 - ramp(min(thickness_m(self._tall, jambs_xy, self._grid)), *WALL_THICK_M)
         return p * room_to_room(jambs_xy, self.free, self._grid) if p >= FAINT else 0.0
 
     def _is_jamb(self, jamb_xy: Array, tall: float, low_jamb: float) -> float:

@@ -17,6 +17,9 @@ LONGEST_M = 2.0
 """No more is measured to either side."""
 REACH_M = 0.15
 """What stands this near to where a jamb ends is the jamb."""
+FACE_M = 0.08
+"""What lies this near to it, its own cell and those beside it, is its face: a wall that runs on
+from a door's frame is further off."""
 TORN_M = 0.25
 """A run goes on over holes as long: seen at a slant, a wall's cells lie apart."""
 TILTS = 7
@@ -29,33 +32,49 @@ def runs_m(standing: Mask, jambs_xy: Array, grid: OccupancyGrid) -> tuple[float,
 
     Along the line between them or across it; 0 where nothing is marked at a jamb.
     """
-    corner, resolution = np.array(grid.origin_xy), grid.resolution_m
-    (x0, y0), (x1, y1) = ((jambs_xy - corner) / resolution).tolist()
-    along = math.atan2(y1 - y0, x1 - x0)
-    reach, torn, most = (m / resolution for m in (REACH_M, TORN_M, LONGEST_M))
-    first, second = (
-        _longest(standing, x, y, along, reach, torn, most) * resolution
-        for x, y in ((x0, y0), (x1, y1))
-    )
+    along = _runs(standing, jambs_xy, grid, 0.0, REACH_M, MOST_TILT_RAD)
+    across = _runs(standing, jambs_xy, grid, math.pi / 2, REACH_M, MOST_TILT_RAD)
+    return max(along[0], across[0]), max(along[1], across[1])
+
+
+def thickness_m(standing: Mask, jambs_xy: Array, grid: OccupancyGrid) -> tuple[float, float]:
+    """How far marked cells (rows, cols) run on from both jambs (2, 2), the way one passes, m."""
+    return _runs(standing, jambs_xy, grid, math.pi / 2, FACE_M, 0.0)
+
+
+def _runs(
+    marked: Mask, jambs_xy: Array, grid: OccupancyGrid, turn: float, reach_m: float, tilt: float
+) -> tuple[float, float]:
+    """Of both jambs the longest run at an angle to the line between them, give or take a tilt."""
+    resolution = grid.resolution_m
+    cells = ((jambs_xy - np.array(grid.origin_xy)) / resolution).tolist()
+    angle = math.atan2(cells[1][1] - cells[0][1], cells[1][0] - cells[0][0]) + turn
+    limits = tuple(m / resolution for m in (reach_m, TORN_M, LONGEST_M))
+    first, second = (_longest(marked, x, y, angle, tilt, *limits) * resolution for x, y in cells)
     return first, second
 
 
 @kernel
 def _longest(
-    marked: Mask, x: float, y: float, along: float, reach: float, torn: float, most: float
+    marked: Mask,
+    x: float,
+    y: float,
+    angle: float,
+    tilt: float,
+    reach: float,
+    torn: float,
+    most: float,
 ) -> float:
-    """The longest run through a marked cell within reach of a point, all in cells."""
+    """The longest run in a direction through a marked cell within reach of a point, in cells."""
     n, best = int(reach) + 1, 0.0
     for row in range(max(0, int(y) - n), min(marked.shape[0], int(y) + n + 1)):
         for col in range(max(0, int(x) - n), min(marked.shape[1], int(x) + n + 1)):
             if not marked[row, col] or math.hypot(col + 0.5 - x, row + 0.5 - y) > reach:
                 continue
-            for quarter in range(2):
-                for k in range(TILTS):
-                    tilt = MOST_TILT_RAD * (2 * k / (TILTS - 1) - 1)
-                    angle = along + quarter * math.pi / 2 + tilt
-                    before = _run(marked, row, col, angle + math.pi, torn, most)
-                    best = max(best, before + _run(marked, row, col, angle, torn, most) + 1)
+            for k in range(TILTS):
+                tilted = angle + tilt * (2 * k / (TILTS - 1) - 1)
+                before = _run(marked, row, col, tilted + math.pi, torn, most)
+                best = max(best, before + _run(marked, row, col, tilted, torn, most) + 1)
     return best
 
 

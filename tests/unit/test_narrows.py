@@ -12,7 +12,7 @@ from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_mapping.grid_input import insert_view
 from afkb_mapping.narrows import gaps_of_map
 from afkb_mapping.occupancy import GridBuilder
-from afkb_mapping.straight_runs import runs_m
+from afkb_mapping.straight_runs import runs_m, thickness_m
 
 SMALL = PinholeCamera(320, 240, 262.5, 262.5, 159.5, 119.5)
 WIDTH = (0.55, 0.7, 1.8, 2.5)
@@ -60,7 +60,7 @@ def test_what_nothing_is_known_of_is_no_way():
     assert not any(p > 0 for _, p in gaps_of_map(free, standing, grid, WIDTH))
 
 
-def test_runs_are_measured_along_and_across_over_small_holes():
+def test_runs_and_thickness_are_measured_over_small_holes():
     standing = np.zeros((100, 100), dtype=bool)
     standing[20:60, 40] = True
     standing[30:33, 40] = False
@@ -72,6 +72,8 @@ def test_runs_are_measured_along_and_across_over_small_holes():
     assert runs_m(standing, turned, grid) == pytest.approx((2.0, 0.0))
     bench = np.array([jambs[1], jambs[1] + [1.0, 0.0]])
     assert runs_m(standing, bench, grid)[0] == pytest.approx(0.3)
+    assert thickness_m(standing, bench, grid)[0] == pytest.approx(0.05)
+    assert thickness_m(standing, turned, grid) == pytest.approx((2.0, 0.0))
     slanting = np.array([jambs[0], jambs[0] + [1.0, 1.0]])
     assert runs_m(standing, slanting, grid)[0] < 0.5
 
@@ -126,3 +128,8 @@ def test_a_narrowing_between_cabinets_is_no_doorway():
 def replace_top(box):
     """The same box as high as a wall."""
     return depth.Box(box.low, (*box.high[:2], 2.5))
+
+
+def test_an_aisle_between_deep_cabinets_is_no_doorway():
+    deep = [depth.Box((3.0, y, 0.0), (4.1, y + 4.55, 2.5)) for y in (-5.0, 0.45)]
+    assert not from_depth(deep, PLACES, [])
