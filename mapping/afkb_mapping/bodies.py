@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
 from afkb_mapping.depth_points import points_of_pixels
-from afkb_mapping.image_regions import Rectangle, Region, returning_rectangle
+from afkb_mapping.image_regions import Region
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
@@ -91,27 +91,45 @@ def _taken(
     return us, vs, zs, xyz
 
 
-def bodies_among(earlier: Sequence[Detection], view: View) -> Iterator[tuple[int, Body]]:
-    """The bodies that an earlier detector cut out of this view, each with its index."""
-    if view.depth_m is None:
-        return
-    returning = returning_rectangle(view.depth_m)
-    for index, detection in enumerate(earlier):
-        if detection.pixels is not None and "stand" in detection.measures:
-            yield index, _body_of(detection, view, returning)
+def is_body(detection: Detection) -> bool:
+    """Whether a detector cut a body out of its view."""
+    return detection.pixels is not None and "stand" in detection.measures
 
 
-def _body_of(detection: Detection, view: View, returning: Rectangle) -> Body:
+def body_of(detection: Detection, view: View, every: int = 1) -> Body:
+    """The body of a detection (`is_body`) of this view.
+
+    `every`: it is thinned to such rows and columns, numbered anew as those of `depth_m[::every,
+    ::every]` are; enough of a body that is near.
+    """
     assert detection.pixels is not None and view.depth_m is not None
-    v, u = np.divmod(detection.pixels, np.int32(view.depth_m.shape[1]))
+    rows, columns = view.depth_m.shape
+    u, v = _thinned(detection.pixels, columns, every)
     depths, points = points_of_pixels(u, v, view)
     m = detection.measures
     slope = (m.get("slope_x", 0.0), m.get("slope_y", 0.0), m.get("slope_offset", 0.0))
-    points[:, 2] -= slope[0] * points[:, 0] + slope[1] * points[:, 1] + slope[2]
-    height = m.get("support_height")
+    if any(slope):
+        points[:, 2] -= slope[0] * points[:, 0] + slope[1] * points[:, 1] + slope[2]
+    if every > 1:
+        u, v = u // every, v // every
+    shape = (-(-rows // every), -(-columns // every))
     stand = Stand(int(m["stand"]))
-    shape = view.depth_m.shape
-    return Body(u, v, depths, points, shape, stand, height, slope, returning=returning)
+    return Body(u, v, depths, points, shape, stand, m.get("support_height"), slope)
+
+
+@kernel
+def _thinned(
+    pixels: NDArray[np.int32], columns: int, every: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Columns and rows of those of the flat pixels that lie in every so manieth of both."""
+    u, v, n = np.empty(len(pixels), np.int32), np.empty(len(pixels), np.int32), 0
+    for k in range(len(pixels)):
+        row = pixels[k] // columns
+        column = pixels[k] - row * columns
+        if row % every == 0 and column % every == 0:
+            u[n], v[n] = column, row
+            n += 1
+    return u[:n], v[:n]
 
 
 def supports_among(earlier: Sequence[Detection]) -> list[Detection]:

@@ -108,7 +108,7 @@ def look_at_top(
     if len(seen[0]) >= min_inside:
         opening = _opening(points, hull, rim_xy, camera_xyz, rim, *seen)
     return Top(
-        rim, cv2.contourArea(hull), n_through, lid_share, sight, float(np.median(bands)), opening
+        rim, cv2.contourArea(hull), n_through, lid_share, sight, percentile(bands, 50.0), opening
     )
 
 

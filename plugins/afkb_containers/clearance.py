@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import View
+from afkb_containers.sight import Sight
 from afkb_mapping.bodies import Body
-from afkb_mapping.depth_points import intrinsics_of
 from afkb_mapping.kernels import kernel
 
 TOP_M = 0.012
@@ -34,13 +33,10 @@ class Above:
     outside: float
 
 
-def above(body: Body, top_m: float, view: View) -> Above:
-    """What a view shows above a body whose top is at top_m, heights as the body's."""
-    assert view.depth_m is not None
-    T_camera_map = np.linalg.inv(view.T_map_camera).astype(np.float64)
-    slope = np.array(body.slope)
+def above(body: Body, top_m: float, sight: Sight) -> Above:
+    """What is seen above a body whose top is at top_m, heights as the body's."""
     free, filled, outside, n = _above(
-        body.points, top_m, slope, view.depth_m, intrinsics_of(view), T_camera_map
+        body.points, top_m, body.slope, sight.depth_m, sight.intrinsics, sight.T_camera_map
     )
     return Above(free / max(n, 1), filled / max(n, 1), outside / max(n, 1))
 
@@ -49,7 +45,7 @@ def above(body: Body, top_m: float, view: View) -> Above:
 def _above(
     points: NDArray[np.float64],
     top_m: float,
-    slope: NDArray[np.float64],
+    slope: tuple[float, float, float],
     depth_m: NDArray[np.float32],
     intrinsics: NDArray[np.float64],
     T_camera_map: NDArray[np.float64],

@@ -14,15 +14,17 @@ from afkb_containers.spread import UNKNOWN
 from afkb_mapping.bodies import Body
 from afkb_mapping.from_above import box_around, on_grid
 from afkb_mapping.openings import Opening
-from afkb_mapping.order_statistics import percentile
 
 LITRES_PER_M3 = 1000.0
 
 
 def container_detection(
-    body: Body, about: int, verdict: Verdict, looks: Looks, detector: str
+    body: Body, thing: Detection, about: int, verdict: Verdict, looks: Looks, detector: str
 ) -> Detection:
-    """The body at index `about`, from its base up to its rim or top; its centre is that box's."""
+    """The body of the thing at index `about`, from its base up to its rim or top.
+
+    Its centre is that box's.
+    """
     base_m = body.base_m
     rim = looks.opening.rim_height_m if looks.opening else base_m + looks.height_m
     box = box_around(on_grid(body.points, 0.005), rim, 0.0, rim - base_m)
@@ -35,11 +37,11 @@ def container_detection(
         box=box,
         position_xyz=np.array(box.center_xyz),
         covariance_xyz=_covariance(looks.noise.sigma_m),
-        footprint_xy=on_grid(body.points, 0.02),
-        n_pixels=len(body.u),
-        range_m=percentile(body.depth_m, 1.0),
-        image_box=body.image_box,
-        cut_by_image=body.cut_by_image,
+        footprint_xy=thing.footprint_xy,
+        n_pixels=thing.n_pixels,
+        range_m=thing.range_m,
+        image_box=thing.image_box,
+        cut_by_image=thing.cut_by_image,
         measures=_measures(body, rim, looks) | {"volume": _litres(looks.opening, box)},
         about=about,
     )

@@ -8,11 +8,11 @@ from afkb.flow import Detection, View
 from afkb_containers.describe import container_detection
 from afkb_containers.judge import LEAST_CLAIM, judge
 from afkb_containers.looks import look_at
-from afkb_containers.noise import noise_scale
 from afkb_containers.settings import ContainerSettings
+from afkb_containers.sight import Sights, step_for
 from afkb_containers.solid import ramp
 from afkb_containers.sunk import sunk_containers
-from afkb_mapping.bodies import Body, Stand, bodies_among
+from afkb_mapping.bodies import Stand, body_of, is_body
 from afkb_mapping.trapezoids import membership
 
 ATTACHED = (0.08, 0.22)
@@ -40,31 +40,29 @@ class ContainerDetector:
         """Containers in the map frame; none where the view has no depth."""
         if view.depth_m is None or view.camera is None:
             return []
-        scale = noise_scale(view.depth_m)
+        sights = Sights(view)
         judged = (
-            self._detection(k, body, earlier[k], view, scale)
-            for k, body in bodies_among(earlier, view)
+            self._detection(index, thing, view, sights)
+            for index, thing in enumerate(earlier)
+            if is_body(thing)
         )
         found = [d for d in judged if d is not None]
         return found + list(sunk_containers(view, earlier, self.settings, self.name))
 
     def _detection(
-        self, index: int, body: Body, thing: Detection, view: View, noise_scale: float
+        self, index: int, thing: Detection, view: View, sights: Sights
     ) -> Detection | None:
-        s = self.settings
-        sides, attached = _sides(thing), thing.measures["attached"]
-        size = membership(sides[0], s.sides_m(body.stand)) * (1 - ramp(attached, ATTACHED))
-        low = body.stand is Stand.ON_FLOOR or thing.measures["height"] <= s.tallest_m - 0.02
+        s, m = self.settings, thing.measures
+        sides, attached, stand = (m["length"], m["width"]), m["attached"], Stand(int(m["stand"]))
+        size = membership(sides[0], s.sides_m(stand)) * (1 - ramp(attached, ATTACHED))
+        low = stand is Stand.ON_FLOOR or m["height"] <= s.tallest_m - 0.02
         if size <= 0 or not low:
             return None
-        looks = look_at(body, sides, view, noise_scale, s)
-        part = ramp(attached, ATTACHED_CLOSED) if body.stand is Stand.ON_SUPPORT else 0.0
-        verdict = judge(body, size, 1 - part, looks, s)
+        step = step_for(thing.n_pixels)
+        body = body_of(thing, view, step)
+        looks = look_at(body, sides, thing.cut_by_image, sights.every(step), s)
+        part = ramp(attached, ATTACHED_CLOSED) if stand is Stand.ON_SUPPORT else 0.0
+        verdict = judge(body, size, 1 - part, thing.cut_by_image, looks, s)
         if verdict.contains < LEAST_CLAIM:
             return None
-        return container_detection(body, index, verdict, looks, self.name)
-
-
-def _sides(thing: Detection) -> tuple[float, float]:
-    """Sides of a thing seen from above, the longer first, m."""
-    return thing.measures["length"], thing.measures["width"]
+        return container_detection(body, thing, index, verdict, looks, self.name)

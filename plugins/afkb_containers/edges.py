@@ -64,8 +64,10 @@ def _edges(
     for k in range(len(u)):
         within = True
         for du, dv in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-            i, j = _returned(v[k] + dv, u[k] + du, dv, du, depth_m)
-            borders = not _is_own(i - v0, j - u0, own)
+            borders = not _is_own(v[k] + dv - v0, u[k] + du - u0, own)
+            if borders:
+                i, j = _returned(v[k] + dv, u[k] + du, dv, du, depth_m)
+                borders = not _is_own(i - v0, j - u0, own)
             if borders and heights_m[k] > foot_m:
                 counts[_kind(i, j, depth_m[v[k], u[k]], depth_m)] += 1
             if edge_px > 1 and not borders:

@@ -40,18 +40,19 @@ class Verdict:
 
 
 def judge(
-    body: Body, size: float, free: float, looks: Looks, settings: ContainerSettings
+    body: Body, size: float, free: float, cut: bool, looks: Looks, settings: ContainerSettings
 ) -> Verdict:
     """Weigh an opening against a closed body.
 
-    `size`: how well the thing's size fits; `free`: how freely it stands, for a closed one; 0 to 1.
+    `size`: how well the thing's size fits; `free`: how freely it stands, for a closed one; 0 to 1;
+    `cut`: whether the image edge cuts it.
     """
     if looks.outline is None:
         return Verdict(0.0, 0.0, 0.0)
     whole_p = whole(looks.outline, looks.height_m)
     open_p = 0.95 * size * whole_p * _open(body.stand, looks, settings)
     solid_p = (1 - open_p) * looks.compact * size * convex(looks.outline, looks.height_m)
-    solid_p *= free * looks.detached * looks.clear * (CUT if body.cut_by_image else 1.0)
+    solid_p *= free * looks.detached * looks.clear * (CUT if cut else 1.0)
     if looks.top is None or not looks.top.tells:
         return Verdict(open_p, solid_p * CLOSED_UNSEEN, open_p + solid_p)
     closed_p = solid_p * _lidded(looks.top)

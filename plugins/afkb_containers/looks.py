@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from afkb.flow import View
 from afkb_containers.clearance import Above, above
 from afkb_containers.edges import edges_of
 from afkb_containers.noise import Noise, noise_of
 from afkb_containers.settings import ContainerSettings
+from afkb_containers.sight import Sight
 from afkb_containers.silhouette import Silhouette, silhouette_of
-from afkb_containers.solid import compact, ramp
+from afkb_containers.solid import compact, ramp, sized
 from afkb_containers.spread import UNKNOWN, Spread, spread_of
 from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.openings import Opening, Top, look_at_top
@@ -69,32 +69,39 @@ class Looks:
 def look_at(
     body: Body,
     sides_m: tuple[float, float],
-    view: View,
-    noise_scale: float,
+    cut: bool,
+    sight: Sight,
     settings: ContainerSettings,
 ) -> Looks:
-    """Measure a body of such sides, seen from above, the longer first, in a view of such noise."""
-    assert view.depth_m is not None and view.camera is not None
-    camera_xyz = view.T_map_camera[:3, 3]
+    """Measure a body of such sides, seen from above, the longer first; the image may `cut` it.
+
+    What nothing yet measured leaves a chance is not measured further.
+    """
     height = max(percentile(body.points[:, 2], 98.0) - body.base_m, 1e-3)
-    noise = noise_of(body, view.depth_m, noise_scale)
-    edge = max(1, round(EDGE_SHARE * view.camera.fx))
-    edges = edges_of(body, view.depth_m, edge)
-    spread = UNKNOWN
-    if SOLID[body.stand]:
-        spread = spread_of(body, camera_xyz, noise.sigma_m, edges.inner)
-    top = look_at_top(body, camera_xyz, sigma_m=noise.sigma_m)
-    fits = SOLID[body.stand] * compact(height, sides_m[0], spread, settings)
-    fits *= membership(sides_m[0], settings.closed_sides_m(body.stand))
-    fits *= (1 - ramp(noise.roughness, ROUGH)) * _stands(body, height)
+    noise = noise_of(body, sight.depth_m, sight.noise_scale)
+    top = look_at_top(body, sight.camera_xyz, sigma_m=noise.sigma_m)
+    fits = _sized(body, height, sides_m, settings) * (1 - ramp(noise.roughness, ROUGH))
+    spread, detached, clear, outline = UNKNOWN, 0.0, 0.0, None
+    if fits > 0:
+        edges = edges_of(body, sight.depth_m, max(1, round(EDGE_SHARE * sight.focal_px)))
+        spread = spread_of(body, sight.camera_xyz, noise.sigma_m, edges.inner, cut)
+        fits *= compact(height, spread, settings)
+        detached = ramp(edges.free, DETACHED) * (1 - ramp(edges.hidden, BEHIND))
     if spread.lies and top is not None:
         fits *= ramp(top.area_m2 / max(math.prod(sides_m), 1e-6), FLAT)
-    outline = None
+    if fits > 0:
+        clear = _clear(above(body, body.base_m + height, sight))
     if fits > 0 or (top is not None and top.opening is not None):
-        outline = silhouette_of(body, view.depth_m, view.camera.fx, noise.sigma_m)
-    clear = _clear(above(body, body.base_m + height, view)) if fits > 0 else 0.0
-    detached = ramp(edges.free, DETACHED) * (1 - ramp(edges.hidden, BEHIND))
+        outline = silhouette_of(body, sight.depth_m, sight.focal_px, noise.sigma_m)
     return Looks(height, noise, spread, top, fits, outline, detached, clear)
+
+
+def _sized(
+    body: Body, height_m: float, sides_m: tuple[float, float], settings: ContainerSettings
+) -> float:
+    """How much a body has the size and the stand of a closed one, 0 to 1."""
+    fits = SOLID[body.stand] * membership(sides_m[0], settings.closed_sides_m(body.stand))
+    return fits * sized(height_m, sides_m[0], settings) * _stands(body, height_m)
 
 
 def _clear(over: Above) -> float:

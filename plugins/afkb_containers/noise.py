@@ -31,8 +31,7 @@ def noise_scale(depth_m: NDArray[np.float32]) -> float:
 
     Second differences along rows are blind to slant and, at the scale of pixels, to curvature.
     """
-    v, u = np.mgrid[0 : depth_m.shape[0] : ROWS_APART, 0 : depth_m.shape[1] : COLUMNS_APART]
-    ratios = _noise_over_model(u.ravel().astype(np.int32), v.ravel().astype(np.int32), depth_m)
+    ratios = _noise_over_model(*_grid(depth_m.shape), depth_m)
     return max(1.0, percentile(ratios, 50.0)) if len(ratios) >= LEAST_SAMPLES else 1.0
 
 
@@ -45,6 +44,16 @@ def noise_of(body: Body, depth_m: NDArray[np.float32], scale: float) -> Noise:
     ratios = _noise_over_model(body.u[::thin], body.v[::thin], depth_m)
     own = percentile(ratios, 50.0) if len(ratios) >= LEAST_SAMPLES else scale
     return Noise(body.sigma_m * max(scale, own), own / scale)
+
+
+@kernel
+def _grid(shape: tuple[int, int]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Columns and rows of pixels that are spread evenly over an image."""
+    rows, columns = -(-shape[0] // ROWS_APART), -(-shape[1] // COLUMNS_APART)
+    u, v = np.empty(rows * columns, np.int32), np.empty(rows * columns, np.int32)
+    for n in range(rows * columns):
+        u[n], v[n] = n % columns * COLUMNS_APART, n // columns * ROWS_APART
+    return u, v
 
 
 @kernel

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import Detection
 from afkb_mapping.from_above import on_grid
+from afkb_mapping.image_regions import Rectangle
 
 CELL_M = 0.02
 SAME_HEIGHT_M = 0.015
@@ -23,7 +24,7 @@ class Rim:
 
     height_m: float
     footprint_xy: NDArray[np.float64]
-    image_box: tuple[int, int, int, int] | None
+    image_box: Rectangle | None
     range_m: float
     cut_by_image: bool
 
@@ -58,15 +59,21 @@ def _one_rim(a: Detection, b: Detection) -> bool:
 
 
 def _joined(group: Sequence[Detection]) -> Rim:
-    weights = np.array([d.n_pixels for d in group], np.float64)
-    heights = np.array([float(d.position_xyz[2]) for d in group])
+    n_pixels = max(sum(d.n_pixels for d in group), 1)
     boxes = [d.image_box for d in group if d.image_box is not None]
-    corners = np.array(boxes).reshape(-1, 4)
-    box = (*corners[:, :2].min(axis=0).tolist(), *corners[:, 2:].max(axis=0).tolist())
+    footprint = group[0].footprint_xy
+    if len(group) > 1:
+        footprint = np.vstack([d.footprint_xy for d in group])
     return Rim(
-        height_m=float(np.average(heights, weights=weights)),
-        footprint_xy=on_grid(np.vstack([d.footprint_xy for d in group]), CELL_M),
-        image_box=box if len(boxes) == len(group) else None,
+        height_m=sum(float(d.position_xyz[2]) * d.n_pixels for d in group) / n_pixels,
+        footprint_xy=on_grid(footprint, CELL_M),
+        image_box=_around(boxes) if len(boxes) == len(group) else None,
         range_m=min(d.range_m for d in group),
         cut_by_image=any(d.cut_by_image for d in group),
     )
+
+
+def _around(boxes: Sequence[Rectangle]) -> Rectangle:
+    """The smallest box of pixels around others."""
+    u0, v0, u1, v1 = zip(*boxes, strict=True)
+    return min(u0), min(v0), max(u1), max(v1)

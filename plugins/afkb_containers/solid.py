@@ -33,15 +33,16 @@ SQUAT = (0.55, 0.80)
 """Height over length: what is this upright is a cup or a can even if it is low."""
 
 
-def compact(height_m: float, length_m: float, spread: Spread, settings: ContainerSettings) -> float:
-    """How much a thing has the measures of a can or carton, 0 to 1; its length is from above."""
-    return (
-        _tall(height_m, length_m, settings)
-        * membership(max(height_m, length_m), settings.max_extent_m)
-        * _thick(spread, height_m, settings)
-        * (1 - ramp(height_m / max(spread.width_m, 1e-3), SLENDER))
-        * (1 - _leans(spread))
-    )
+def sized(height_m: float, length_m: float, settings: ContainerSettings) -> float:
+    """How much a thing is as high as a can or carton, 0 to 1; its length is from above."""
+    tall = membership(max(height_m, length_m), settings.max_extent_m)
+    return tall * _tall(height_m, length_m, settings)
+
+
+def compact(height_m: float, spread: Spread, settings: ContainerSettings) -> float:
+    """How much a thing is as thick and upright as a can or carton, 0 to 1."""
+    slender = ramp(height_m / max(spread.width_m, 1e-3), SLENDER)
+    return _thick(spread, height_m, settings) * (1 - slender) * (1 - _leans(spread))
 
 
 def _leans(spread: Spread) -> float:

@@ -58,13 +58,17 @@ UNKNOWN = Spread(0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0, 0.0, 0.0)
 
 
 def spread_of(
-    body: Body, camera_xyz: NDArray[np.float64], sigma_m: float, inner: NDArray[np.int64]
+    body: Body,
+    camera_xyz: NDArray[np.float64],
+    sigma_m: float,
+    inner: NDArray[np.int64],
+    cut: bool = False,
 ) -> Spread:
     """Spread of a body's points along the axes of their scatter, less a depth noise of sigma_m.
 
     Noise moves a point along its sight line, so that it adds to the scatter matrix there alone.
     Pixels at its outline, where a sensor mixes what lies before and behind, are not `inner` (M,);
-    they don't turn the axes.
+    they don't turn the axes. One that is `cut` by the image seems narrower at its upper end.
     """
     if len(inner) < LEAST_SAMPLES:
         return UNKNOWN
@@ -81,7 +85,7 @@ def spread_of(
     width = _extent_along(points, across) / KEPT
     lies = _lean(normal) > LYING_DEG
     share, face = face_of(points, normal, noise)
-    narrows = 0.0 if body.cut_by_image else narrowing_deg(points, normal)
+    narrows = 0.0 if cut else narrowing_deg(points, normal)
     sure, unsure = (1 - SIGMA_UNSURE) * noise, (1 + SIGMA_UNSURE) * noise
     return Spread(
         thickness_m=mean,

@@ -101,7 +101,10 @@ def sunk_containers(
 def _in_rim(
     view: View, rim: Rim, settings: ContainerSettings, detector: str
 ) -> Iterator[Detection]:
-    top, hull, origin = _seen_from_above(rim)
+    corners = cv2.convexHull(hull_candidates(rim.footprint_xy))
+    if _most_open_m2(rim, corners) < LEAST_AREA_M2:
+        return
+    top, hull, origin = _seen_from_above(rim, corners)
     assert view.depth_m is not None
     camera = (intrinsics_of(view), view.T_map_camera)
     deepest, counts = _holes(
@@ -130,16 +133,25 @@ def _all_of(view: View) -> tuple[int, int, int, int]:
     return 0, 0, cols, rows
 
 
+def _most_open_m2(rim: Rim, corners: NDArray[np.float32]) -> float:
+    """How much of what its corners (N, 1, 2) enclose may be a hole, with squares on the border."""
+    border = cv2.arcLength(corners, True)
+    return cv2.contourArea(corners) + border * CELL_M - rim.area_m2
+
+
 def _seen_from_above(
-    rim: Rim,
+    rim: Rim, corners: NDArray[np.float32]
 ) -> tuple[NDArray[np.uint8], tuple[NDArray[np.uint8], NDArray[np.uint8]], NDArray[np.float64]]:
-    """Squares (X, Y) where a rim is seen; the gap and reach of `_holes`; and their corner (m)."""
+    """Squares (X, Y) where a rim is seen; the gap and reach of `_holes`; and their corner (m).
+
+    `corners` (N, 1, 2) of its hull, m.
+    """
     origin = rim.footprint_xy.min(axis=0) - CELL_M * (RIM_CELLS + 2.5)
     ij = np.floor((rim.footprint_xy - origin) / CELL_M).astype(np.int32)
     top = np.zeros(tuple((ij.max(axis=0) + RIM_CELLS + 3).tolist()), np.uint8)
     top[ij[:, 0], ij[:, 1]] = 1
     hull = np.zeros_like(top)
-    cv2.fillConvexPoly(hull, cv2.convexHull(hull_candidates(ij[:, ::-1]).astype(np.int32)), 1)
+    cv2.fillConvexPoly(hull, np.floor((corners - origin) / CELL_M).astype(np.int32)[..., ::-1], 1)
     gap = hull & (1 - top)
     return top, (gap, cv2.dilate(gap, np.ones((2 * UNDERCUT_CELLS + 1,) * 2, np.uint8))), origin
 
