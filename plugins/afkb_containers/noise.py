@@ -1,4 +1,4 @@
-"""How noisy a view's depth is, and which of its surfaces are rougher than that."""
+"""Which bodies are rougher than their view is noisy."""
 
 from __future__ import annotations
 
@@ -11,11 +11,9 @@ from afkb_mapping.bodies import Body
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
+from afkb_mapping.view_noise import LEAST_SAMPLES, MEDIAN_OF_SECOND_DIFFERENCE
 
-LEAST_SAMPLES, MOST_SAMPLES = 20, 600
-ROWS_APART, COLUMNS_APART = 12, 5
-MEDIAN_OF_SECOND_DIFFERENCE = 1.652
-"""Median size of z[u-1] - 2 z[u] + z[u+1] for white noise of one standard deviation."""
+MOST_SAMPLES = 600
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,15 +22,6 @@ class Noise:
 
     sigma_m: float
     roughness: float
-
-
-def noise_scale(depth_m: NDArray[np.float32]) -> float:
-    """How many times worse than its model a view's noise is; 1 where it is no worse.
-
-    Second differences along rows are blind to slant and, at the scale of pixels, to curvature.
-    """
-    ratios = _noise_over_model(*_grid(depth_m.shape), depth_m)
-    return max(1.0, percentile(ratios, 50.0)) if len(ratios) >= LEAST_SAMPLES else 1.0
 
 
 def noise_of(body: Body, depth_m: NDArray[np.float32], scale: float) -> Noise:
@@ -44,16 +33,6 @@ def noise_of(body: Body, depth_m: NDArray[np.float32], scale: float) -> Noise:
     ratios = _noise_over_model(body.u[::thin], body.v[::thin], depth_m)
     own = percentile(ratios, 50.0) if len(ratios) >= LEAST_SAMPLES else scale
     return Noise(body.sigma_m * max(scale, own), own / scale)
-
-
-@kernel
-def _grid(shape: tuple[int, int]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Columns and rows of pixels that are spread evenly over an image."""
-    rows, columns = -(-shape[0] // ROWS_APART), -(-shape[1] // COLUMNS_APART)
-    u, v = np.empty(rows * columns, np.int32), np.empty(rows * columns, np.int32)
-    for n in range(rows * columns):
-        u[n], v[n] = n % columns * COLUMNS_APART, n // columns * ROWS_APART
-    return u, v
 
 
 @kernel

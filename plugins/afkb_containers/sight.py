@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import View
-from afkb_containers.noise import noise_scale
 from afkb_mapping.depth_points import intrinsics_of
+from afkb_mapping.view_noise import noise_scale
 
 ENOUGH_PIXELS = 1500
 """So many pixels of a body tell its shape; four times as many are thinned."""

@@ -6,13 +6,14 @@ import cv2
 import numpy as np
 import pytest
 
-from afkb_containers.noise import noise_of, noise_scale
+from afkb_containers.noise import noise_of
 from afkb_containers.silhouette import silhouette_of
 from afkb_containers.spread import Spread, spread_of
 from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.depth_points import points_of_row
 from afkb_mapping.from_above import sides_from_above
 from afkb_mapping.opening_kernels import border_lines, within
+from afkb_mapping.view_noise import noise_scale
 from afkb_things.above import fit_supports
 from afkb_things.supports import RASTER_M
 
