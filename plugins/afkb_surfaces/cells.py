@@ -8,19 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
-from afkb_mapping.sensor_noise import depth_sigma
-from afkb_surfaces.moments import CELL, ONE, ZERO, cell_moments
+from afkb_surfaces.moments import CELL, ONE, ZERO, N, moments_of_row
+from afkb_surfaces.noise import LEAST_WINDOW, noise_of, room_for, sigma_of
 from afkb_surfaces.windows import (
     MEAN_U,
     MEAN_V,
     MEAN_W,
+    N_FIT,
     SLOPE_U,
     SLOPE_V,
     SPREAD,
     VARIANCE,
     WEIGHT,
-    cell_fit,
-    window_fits,
+    fit_moments,
+    fit_windows,
 )
 
 A, B, C, NX, NY, NZ, X, Y, Z, DEPTH, SIGMA_TILT, COUNT = range(12)
@@ -29,14 +30,9 @@ N_ROWS = 12
 
 FLAT = 1.6
 """A plane fits where the pixels stray from it by at most this many times the noise."""
-LEAST_WINDOW, LEAST_CELL = 0.3, 0.5
-"""Share of the pixels of a window, and of a cell, that must have depth for a plane to be fitted;
-half of them may be missing anywhere."""
+LEAST_CELL = 0.5
+"""Share of the pixels of a cell that must have depth for a plane to be fitted to it alone."""
 MIDDLE, TINY = np.float32(0.5 * (CELL - 1)), np.float32(1e-12)
-MOST_NOISE = 4.0
-"""A sensor, or a scene of leaves and tangles, may seem this much noisier than a Kinect."""
-QUIET_SHARE = 0.35
-"""At least this share of a view's windows is taken to lie on planes: they show the noise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,57 +63,72 @@ class Cells:
         """
         height, width = (n // thin * thin for n in depth_m.shape)
         coarse = np.ascontiguousarray(depth_m[:height:thin, :width:thin], dtype=np.float32)
-        moments = cell_moments(coarse)
-        fits = window_fits(moments)
-        noise = noise_of(fits)
-        keep_flat(fits, moments, noise, softness_m)
-        planes = cell_planes(fits, intrinsics / thin, T_map_camera, noise)
+        noise = noise_of(coarse)
+        planes = cell_planes(coarse, intrinsics / thin, T_map_camera, noise, softness_m)
         planes[:, :2] /= thin
         return cls(planes, CELL * thin, noise)
 
 
 @kernel
-def noise_of(fits: NDArray[np.float32]) -> float:
-    """How many times noisier a view is than `depth_sigma` says, between 1 and MOST_NOISE."""
-    bins, n = np.zeros(64, np.int64), 0
-    least = np.float32(9 * CELL * CELL * LEAST_WINDOW)
-    for r in range(1, fits.shape[0], 2):
-        for c in range(1, fits.shape[2], 2):
-            if fits[r, WEIGHT, c] < least:
-                continue
-            z = ONE / fits[r, MEAN_W, c]
-            ratio = np.sqrt(fits[r, VARIANCE, c]) * z * z / depth_sigma(z)
-            bins[min(int(ratio * 8.0), 63)] += 1
-            n += 1
-    below = 0
-    for k in range(64):
-        below += bins[k]
-        if below > QUIET_SHARE * n:
-            return min(max((k + 1) / 8.0, 1.0), MOST_NOISE)
-    return 1.0
+def cell_planes(
+    depth_m: NDArray[np.float32],
+    intrinsics: NDArray[np.float64],
+    T_map_camera: NDArray[np.float64],
+    noise: float,
+    softness_m: float,
+) -> NDArray[np.float32]:
+    """Planes (rows, N_ROWS, cols) of the cells of a depth image, map frame; normals point back.
+
+    Row by row, with three rows of moments at hand, which the processor's nearest memory holds.
+    """
+    rows, cols = depth_m.shape[0] // CELL, depth_m.shape[1] // CELL
+    planes = np.empty((rows, N_ROWS, cols), np.float32)
+    pixels, moments, down, window = room_for(cols)
+    fit, own = np.empty((N_FIT, cols), np.float32), np.empty((N_FIT, cols + 2), np.float32)
+    camera, T = intrinsics.astype(np.float32), T_map_camera.astype(np.float32)
+    if rows > 0:
+        moments_of_row(depth_m, 0, pixels, moments[1])
+    for r in range(rows):
+        above, here, below = moments[r % 3], moments[(r + 1) % 3], moments[(r + 2) % 3]
+        if r + 1 < rows:
+            moments_of_row(depth_m, r + 1, pixels, below)
+        else:
+            below[:] = ZERO
+        fit_windows(above, here, below, down, window, fit)
+        fit_moments(here, own)
+        _keep_flat(fit, own, here[N], np.float32(FLAT * noise), np.float32(softness_m))
+        _write_places(fit, planes[r], r, camera, T)
+        _write_normals(fit, planes[r], camera, T, np.float32(noise))
+    return planes
 
 
 @kernel
-def keep_flat(
-    fits: NDArray[np.float32], moments: NDArray[np.float32], noise: float, softness_m: float
+def _keep_flat(
+    fit: NDArray[np.float32],
+    own: NDArray[np.float32],
+    seen: NDArray[np.float32],
+    times: np.float32,
+    softness_m: np.float32,
 ) -> None:
-    """Put a cell's own fit where its window's is none; WEIGHT 0 where that is none either."""
-    cols = fits.shape[2]
-    flat = np.empty(cols, np.bool_)
-    times, soft = np.float32(FLAT * noise), np.float32(softness_m)
+    """Of a row of cells, put a cell's own fit where its window's is none; WEIGHT 0 if neither is.
+
+    `fit` (N_FIT, cols) of windows; `own` (N_FIT, cols + 2), and `seen`, the number of pixels with
+    depth, of the cells themselves.
+    """
+    cols = fit.shape[1]
+    flat, flat_own = np.empty(cols, np.bool_), np.empty(cols + 2, np.bool_)
+    _find_flat(fit, times, softness_m, flat)
+    _find_flat(own, times, softness_m, flat_own)
     least = np.float32(LEAST_WINDOW * 9 * CELL * CELL)
-    for r in range(fits.shape[0]):
-        own = moments[r + 1, 0, 1:-1]
-        _find_flat(fits[r], times, soft, flat)
-        for c in range(cols):
-            if flat[c] and own[c] >= CELL and fits[r, WEIGHT, c] >= least:
-                continue
-            if own[c] >= LEAST_CELL * CELL * CELL:
-                cell_fit(moments, r, c, fits)
-                _find_flat(fits[r, :, c : c + 1], times, soft, flat[c : c + 1])
-                if flat[c]:
-                    continue
-            fits[r, WEIGHT, c] = ZERO
+    least_own = np.float32(LEAST_CELL * CELL * CELL)
+    for c in range(cols):
+        if flat[c] and seen[c + 1] >= CELL and fit[WEIGHT, c] >= least:
+            continue
+        if flat_own[c + 1] and seen[c + 1] >= least_own:
+            for k in range(N_FIT):
+                fit[k, c] = own[k, c + 1]
+        else:
+            fit[WEIGHT, c] = ZERO
 
 
 @kernel
@@ -128,25 +139,8 @@ def _find_flat(
     for c in range(len(flat)):
         w = fit[MEAN_W, c]
         z = ONE / max(w, TINY)
-        most = (times * np.float32(depth_sigma(z)) + softness_m) * w * w
+        most = (times * sigma_of(z) + softness_m) * w * w
         flat[c] = fit[VARIANCE, c] <= most * most
-
-
-@kernel
-def cell_planes(
-    fits: NDArray[np.float32],
-    intrinsics: NDArray[np.float64],
-    T_map_camera: NDArray[np.float64],
-    noise: float,
-) -> NDArray[np.float32]:
-    """Planes (rows, N_ROWS, cols) from fits, map frame; the normal points to the camera."""
-    rows, cols = fits.shape[0], fits.shape[2]
-    planes = np.empty((rows, N_ROWS, cols), np.float32)
-    camera, T = intrinsics.astype(np.float32), T_map_camera.astype(np.float32)
-    for r in range(rows):
-        _write_places(fits[r], planes[r], r, camera, T)
-        _write_normals(fits[r], planes[r], camera, T, np.float32(noise))
-    return planes
 
 
 @kernel
@@ -195,5 +189,5 @@ def _write_normals(
         out[NY, c] = -(R10 * px + R11 * py + R12 * pz) * by_length
         out[NZ, c] = -(R20 * px + R21 * py + R22 * pz) * by_length
         spread = np.sqrt(max(fit[WEIGHT, c] * fit[SPREAD, c], ONE))
-        sigma = noise * np.float32(depth_sigma(out[DEPTH, c]))
-        out[SIGMA_TILT, c] = sigma * fit[MEAN_W, c] ** 2 * fx * by_length / spread
+        sigma, w = noise * sigma_of(out[DEPTH, c]), fit[MEAN_W, c]
+        out[SIGMA_TILT, c] = sigma * w * w * fx * by_length / spread

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
-from afkb_mapping.sensor_noise import depth_sigma
 from afkb_surfaces.cells import COUNT, DEPTH, NX, NY, NZ, SIGMA_TILT, X, Y, Z
+from afkb_surfaces.noise import sigma_of
 
 SAME_WALL_COS = 0.92
 """A wall's normal stays this close to where it was first seen, so that corners part walls."""
@@ -52,7 +52,7 @@ def _kinds(
             level = level_cos * (ONE - half * s * s) - level_sin * (s - sixth * s * s * s)
             upright = upright_sin * (ONE - half * t * t) + upright_cos * t
             up = p[NZ, c]
-            near_floor = abs(p[Z, c]) < floor_m + some * np.float32(depth_sigma(p[DEPTH, c]))
+            near_floor = abs(p[Z, c]) < floor_m + some * sigma_of(p[DEPTH, c])
             kind = UPRIGHT if abs(up) < upright else NONE
             kind = (FLOOR if near_floor else SUPPORT) if up > level else kind
             out[c] = kind if p[COUNT, c] > ZERO else NONE
@@ -95,7 +95,7 @@ def _link(
         forth = abs(dx * p[NX, i] + dy * p[NY, i] + dz * p[NZ, i])
         back = abs(dx * q[NX, i] + dy * q[NY, i] + dz * q[NZ, i])
         off = min(forth, back) if kind == UPRIGHT else min(abs(dz), max(forth, back))
-        if off < step_m + noise * np.float32(depth_sigma(min(p[DEPTH, i], q[DEPTH, i]))):
+        if off < step_m + noise * sigma_of(min(p[DEPTH, i], q[DEPTH, i])):
             links[i] |= bit
 
 

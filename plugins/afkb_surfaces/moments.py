@@ -18,6 +18,9 @@ CELL = 4
 N, SU, SV, SUU, SUV, SVV, SW, SUW, SVW, SWW = range(10)
 """Moments of a cell: number of pixels with depth, and sums over these; u and v from its middle."""
 
+N_SCRATCH = 11
+"""Rows of pixels that `moments_of_row` works with."""
+
 ZERO, ONE = np.float32(0.0), np.float32(1.0)
 INNER, OUTER = np.float32(0.5), np.float32(1.5)
 """Distance of a cell's inner and outer pixels from its middle, px."""
@@ -25,34 +28,30 @@ INNER_SQUARED, OUTER_SQUARED = np.float32(0.25), np.float32(2.25)
 
 
 @kernel
-def cell_moments(depth_m: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Moments (rows + 2, 10, cols + 2) of the cells of a depth image (H, W), in m and px.
+def moments_of_row(
+    depth_m: NDArray[np.float32], r: int, scratch: NDArray[np.float32], m: NDArray[np.float32]
+) -> None:
+    """Write the moments of row r of the cells of a depth image (H, W) into m (10, cols + 2).
 
-    A margin of one empty cell lies around them.
+    In m and px. The first and the last column, a margin of empty cells, stay as they are.
+    `scratch`: (N_SCRATCH, CELL * cols) of any content.
     """
-    rows, cols = depth_m.shape[0] // CELL, depth_m.shape[1] // CELL
-    moments = np.zeros((rows + 2, 10, cols + 2), np.float32)
-    w = np.empty((CELL, CELL * cols), np.float32)
-    seen = np.empty((CELL, CELL * cols), np.float32)
-    sums = np.empty((3, CELL * cols), np.float32)
-    for r in range(rows):
-        for i in range(CELL):
-            _invert(depth_m[r * CELL + i], w[i], seen[i])
-        m = moments[r + 1]
-        _add_down(seen[0], seen[1], seen[2], seen[3], sums)
-        _add_across(sums[0], m[N])
-        _lean_across(sums[0], m[SU])
-        _spread_across(sums[0], m[SUU])
-        _add_across(sums[1], m[SV])
-        _lean_across(sums[1], m[SUV])
-        _add_across(sums[2], m[SVV])
-        _add_down(w[0], w[1], w[2], w[3], sums)
-        _add_across(sums[0], m[SW])
-        _lean_across(sums[0], m[SUW])
-        _add_across(sums[1], m[SVW])
-        _add_squares_down(w[0], w[1], w[2], w[3], sums[0])
-        _add_across(sums[0], m[SWW])
-    return moments
+    w, seen, sums = scratch[:4], scratch[4:8], scratch[8:11]
+    for i in range(CELL):
+        _invert(depth_m[r * CELL + i], w[i], seen[i])
+    _add_down(seen[0], seen[1], seen[2], seen[3], sums)
+    _add_across(sums[0], m[N])
+    _lean_across(sums[0], m[SU])
+    _spread_across(sums[0], m[SUU])
+    _add_across(sums[1], m[SV])
+    _lean_across(sums[1], m[SUV])
+    _add_across(sums[2], m[SVV])
+    _add_down(w[0], w[1], w[2], w[3], sums)
+    _add_across(sums[0], m[SW])
+    _lean_across(sums[0], m[SUW])
+    _add_across(sums[1], m[SVW])
+    _add_squares_down(w[0], w[1], w[2], w[3], sums[0])
+    _add_across(sums[0], m[SWW])
 
 
 @kernel

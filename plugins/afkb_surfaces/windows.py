@@ -37,23 +37,22 @@ LEAST_DET = np.float32(0.05)
 
 
 @kernel
-def window_fits(moments: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Fit (rows, N_FIT, cols) of each window of three by three cells; WEIGHT 0 where none is."""
-    rows, cols = moments.shape[0] - 2, moments.shape[2] - 2
-    fits = np.empty((rows, N_FIT, cols), np.float32)
-    down = np.empty((10, cols + 2), np.float32)
-    window = np.empty((10, cols), np.float32)
-    for r in range(rows):
-        _add_rows(moments[r], moments[r + 1], moments[r + 2], down)
-        _add_columns(down, window)
-        _fit_row(window, fits[r])
-    return fits
+def fit_windows(
+    above: NDArray[np.float32],
+    here: NDArray[np.float32],
+    below: NDArray[np.float32],
+    down: NDArray[np.float32],
+    window: NDArray[np.float32],
+    fit: NDArray[np.float32],
+) -> None:
+    """Write the fits of the windows of three by three cells around a row of cells.
 
-
-@kernel
-def cell_fit(moments: NDArray[np.float32], r: int, c: int, fits: NDArray[np.float32]) -> None:
-    """Write the fit of one cell alone in place of that of its window."""
-    _fit_row(moments[r + 1, :, c + 1 : c + 2], fits[r, :, c : c + 1])
+    `above`, `here`, `below`: (10, cols + 2) moments of three rows; `fit`: (N_FIT, cols), WEIGHT 0
+    where there is none. `down` (10, cols + 2) and `window` (10, cols) are room to work in.
+    """
+    _add_rows(above, here, below, down)
+    _add_columns(down, window)
+    fit_moments(window, fit)
 
 
 @kernel
@@ -98,7 +97,7 @@ def _add_columns(x: NDArray[np.float32], out: NDArray[np.float32]) -> None:
 
 
 @kernel
-def _fit_row(m: NDArray[np.float32], fit: NDArray[np.float32]) -> None:
+def fit_moments(m: NDArray[np.float32], fit: NDArray[np.float32]) -> None:
     """Least squares of w on (u, v) from moments (10, n) into fits (N_FIT, n)."""
     for i in range(m.shape[1]):
         share = ONE / max(m[N, i], ONE)
