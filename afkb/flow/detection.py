@@ -107,7 +107,8 @@ class Detection:
         for name, p in self.affordances.items():
             if not (math.isfinite(p) and 0 <= p <= 1):
                 raise ValueError(f"{self.detector}: {name} has probability {p}, not in 0..1")
-        if self.position_xyz.shape != (3,) or not np.isfinite(self.position_xyz).all():
+        at = self.position_xyz
+        if at.shape != (3,) or not all(map(math.isfinite, at.tolist())):
             raise ValueError(f"{self.detector}: position {self.position_xyz} is not a finite (3,)")
 
     @property

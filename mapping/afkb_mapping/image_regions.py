@@ -169,17 +169,25 @@ def order_by_label(
 
     Label k holds `order[starts[k]:starts[k + 1]]`, ascending.
     """
-    n = len(wanted)
+    n, last = len(wanted), len(labels)
     starts = np.zeros(n + 1, np.int64)
-    for i in range(len(labels)):
-        if wanted[labels[i]]:
-            starts[labels[i] + 1] += 1
+    i = 0
+    while i < last:
+        k, first = labels[i], i
+        while i < last and labels[i] == k:
+            i += 1
+        if wanted[k]:
+            starts[k + 1] += i - first
     for k in range(n):
         starts[k + 1] += starts[k]
     order, fill = np.empty(starts[n], np.int64), starts[:-1].copy()
-    for i in range(len(labels)):
-        k = labels[i]
+    i = 0
+    while i < last:
+        k, first = labels[i], i
+        while i < last and labels[i] == k:
+            i += 1
         if wanted[k]:
-            order[fill[k]] = i
-            fill[k] += 1
+            for j in range(first, i):
+                order[fill[k] + j - first] = j
+            fill[k] += i - first
     return order, starts

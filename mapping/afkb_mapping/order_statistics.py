@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
 
+FEW = 8
+"""Values so near the end of an order are found by looking for the smallest, or largest, few."""
+
 
 @kernel
 def _select(scratch: NDArray[np.float64], k: int) -> float:
@@ -36,16 +39,40 @@ def _select(scratch: NDArray[np.float64], k: int) -> float:
 
 
 @kernel
+def _smallest(values: NDArray[np.float64], sign: float, k: int) -> tuple[float, float]:
+    """The k-th and the next smallest of sign times the values, k < FEW, in one pass."""
+    kept = np.full(k + 2, np.inf)
+    for n in range(len(values)):
+        value = sign * values[n]
+        if value < kept[k + 1]:
+            i = k + 1
+            while i > 0 and value < kept[i - 1]:
+                kept[i] = kept[i - 1]
+                i -= 1
+            kept[i] = value
+    return float(kept[k]), float(kept[k + 1])
+
+
+@kernel
 def _percentile_within(scratch: NDArray[np.float64], percent: float) -> float:
-    rank = (len(scratch) - 1) * (percent / 100.0)
+    last = len(scratch) - 1
+    rank = last * (percent / 100.0)
     k = math.floor(rank)
     share = rank - k
-    low = _select(scratch, k)
+    if k == last:
+        return float(scratch.max())
+    if k < FEW:
+        low, high = _smallest(scratch, 1.0, k)
+    elif last - k <= FEW:
+        high, low = _smallest(scratch, -1.0, last - k - 1)
+        low, high = -low, -high
+    else:
+        low = _select(scratch, k)
+        high = float(scratch[k + 1])
+        for n in range(k + 2, len(scratch)):
+            high = min(high, float(scratch[n]))
     if share == 0.0:
         return low
-    high = float(scratch[k + 1])
-    for n in range(k + 2, len(scratch)):
-        high = min(high, float(scratch[n]))
     # numpy's rounding, so that the result is the same to the last bit
     return high - (high - low) * (1.0 - share) if share >= 0.5 else low + (high - low) * share
 

@@ -65,7 +65,8 @@ class Cells:
         coarse = np.ascontiguousarray(depth_m[:height:thin, :width:thin], dtype=np.float32)
         noise = noise_of(coarse)
         planes = cell_planes(coarse, intrinsics / thin, T_map_camera, noise, softness_m)
-        planes[:, :2] /= thin
+        if thin > 1:
+            planes[:, :2] /= thin
         return cls(planes, CELL * thin, noise)
 
 

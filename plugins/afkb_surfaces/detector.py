@@ -26,7 +26,7 @@ from afkb_surfaces.labelled import Labelled
 from afkb_surfaces.patches import measure_patches
 from afkb_surfaces.settings import SurfaceSettings
 from afkb_surfaces.supports import LEAST_CELLS, LEAST_PIXELS, Supports, candidates
-from afkb_surfaces.upright import CELLS, measure_walls, upright_detection
+from afkb_surfaces.upright import CELLS, measure_walls, upright_detections
 
 LEAST_WALL_CELLS = 20
 WORTH_A_LOOK = 0.9
@@ -123,9 +123,5 @@ class SurfaceDetector:
         tall = WORTH_A_LOOK * self.settings.bound_height_m[0]
         angle = cells.size_px / focal_px
         measures = measure_walls(*parts, upright, cells.planes, LEAST_WALL_CELLS, tall, angle)
-        for label in np.flatnonzero(measures[:, CELLS] > 0):
-            found = upright_detection(
-                measures[label].tolist(), cells, returning, self.settings, self.name
-            )
-            if found is not None:
-                yield found
+        tall_ones = measures[measures[:, CELLS] > 0]
+        return upright_detections(tall_ones, cells, returning, self.settings, self.name)

@@ -54,8 +54,9 @@ def footprint_of(
             depth = at[2] + j * step[2]
             if depth <= 0.1:
                 continue
-            u = (at[0] + j * step[0]) / depth * fx + cx + 0.5
-            v = (at[1] + j * step[1]) / depth * fy + cy + 0.5
+            near = 1.0 / depth
+            u = (at[0] + j * step[0]) * near * fx + cx + 0.5
+            v = (at[1] + j * step[1]) * near * fy + cy + 0.5
             if 0 <= u < cols and 0 <= v < rows:
                 hit[i + 1, j + 1] = labels[int(v), int(u)] == label
     return _centres(hit, i0, j0, step_m)

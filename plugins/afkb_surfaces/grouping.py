@@ -11,7 +11,7 @@ from afkb_mapping.kernels import kernel
 from afkb_surfaces.cells import COUNT, DEPTH, NX, NY, NZ, SIGMA_TILT, X, Y, Z
 from afkb_surfaces.noise import sigma_of
 
-SAME_WALL_COS = 0.92
+SAME_WALL_COS = np.float32(0.92)
 """A wall's normal stays this close to where it was first seen, so that corners part walls."""
 NONE, FLOOR, SUPPORT, UPRIGHT = 0, 1, 2, 3
 FLOOR_LABEL = 1
@@ -20,7 +20,6 @@ RIGHT, DOWN = 1, 2
 MOST_SLACK_RAD, MOST_UPRIGHT_SLACK_RAD = 0.35, 0.17
 """However unsure a normal is, it is never taken to be this much off."""
 ZERO, ONE = np.float32(0), np.float32(1)
-NOWHERE = np.zeros(0, np.float32)
 
 
 def classify(
@@ -68,10 +67,9 @@ def links_of(
     links = np.zeros((rows, cols), np.uint8)
     step, times = np.float32(step_m), np.float32(noise)
     for r in range(rows):
-        p, k = planes[r], kinds[r]
-        _link(p[:, :-1], p[:, 1:], k[:-1], k[1:], step, times, RIGHT, links[r, :-1])
+        _link(planes[r], planes[r], kinds[r], kinds[r], 1, step, times, RIGHT, links[r])
         if r + 1 < rows:
-            _link(p, planes[r + 1], k, kinds[r + 1], step, times, DOWN, links[r])
+            _link(planes[r], planes[r + 1], kinds[r], kinds[r + 1], 0, step, times, DOWN, links[r])
     return links
 
 
@@ -81,22 +79,23 @@ def _link(
     q: NDArray[np.float32],
     p_kinds: NDArray[np.int8],
     q_kinds: NDArray[np.int8],
+    ahead: int,
     step_m: np.float32,
     noise: np.float32,
     bit: int,
     links: NDArray[np.uint8],
 ) -> None:
-    """Set a bit where cell i of p and cell i of q are of one kind and lie on one surface."""
-    for i in range(len(links)):
-        kind = p_kinds[i]
-        if kind < SUPPORT or kind != q_kinds[i]:
-            continue
-        dx, dy, dz = q[X, i] - p[X, i], q[Y, i] - p[Y, i], q[Z, i] - p[Z, i]
+    """Set a bit where cell i of p and cell i + ahead of q are of one kind, on one surface."""
+    for i in range(len(links) - ahead):
+        j = i + ahead
+        dx, dy, dz = q[X, j] - p[X, i], q[Y, j] - p[Y, i], q[Z, j] - p[Z, i]
         forth = abs(dx * p[NX, i] + dy * p[NY, i] + dz * p[NZ, i])
-        back = abs(dx * q[NX, i] + dy * q[NY, i] + dz * q[NZ, i])
-        off = min(forth, back) if kind == UPRIGHT else min(abs(dz), max(forth, back))
-        if off < step_m + noise * sigma_of(min(p[DEPTH, i], q[DEPTH, i])):
-            links[i] |= bit
+        back = abs(dx * q[NX, j] + dy * q[NY, j] + dz * q[NZ, j])
+        level = min(abs(dz), max(forth, back))
+        off = min(forth, back) if p_kinds[i] == UPRIGHT else level
+        near = off < step_m + noise * sigma_of(min(p[DEPTH, i], q[DEPTH, j]))
+        one = (p_kinds[i] >= SUPPORT) & (p_kinds[i] == q_kinds[j]) & near
+        links[i] |= np.uint8(bit) if one else np.uint8(0)
 
 
 @kernel
@@ -109,11 +108,6 @@ def grow(
     """
     rows, cols = kinds.shape
     labels = np.zeros((rows, cols), np.int32)
-    normals = np.empty((rows, cols, 3), np.float32)
-    for r in range(rows):
-        for k in range(3):
-            for c in range(cols):
-                normals[r, c, k] = planes[r, NX + k, c]
     stack = np.empty((2 * rows * cols, 2), np.int32)
     count = FLOOR_LABEL
     for r0 in range(rows):
@@ -124,14 +118,16 @@ def grow(
             if kind < SUPPORT or labels[r0, c0] > 0:
                 continue
             count += 1
-            facing = normals[r0, c0] if kind == UPRIGHT else NOWHERE
+            facing = (planes[r0, NX, c0], planes[r0, NY, c0], planes[r0, NZ, c0])
             stack[0, 0], stack[0, 1] = r0, c0
             top = 1
             while top > 0:
                 top -= 1
                 r, c = stack[top, 0], stack[top, 1]
                 if labels[r, c] == 0:
-                    top = _fill_span(normals, links, labels, r, c, count, facing, stack, top)
+                    top = _fill_span(
+                        planes, links, labels, r, c, count, kind == UPRIGHT, facing, stack, top
+                    )
     return labels, count
 
 
@@ -160,13 +156,14 @@ def renamed(labels: NDArray[np.int32], target: NDArray[np.int32]) -> NDArray[np.
 
 @kernel
 def _fill_span(
-    normals: NDArray[np.float32],
+    planes: NDArray[np.float32],
     links: NDArray[np.uint8],
     labels: NDArray[np.int32],
     r: int,
     c: int,
     label: int,
-    facing: NDArray[np.float32],
+    wall: bool,
+    facing: tuple[np.float32, np.float32, np.float32],
     stack: NDArray[np.int32],
     top: int,
 ) -> int:
@@ -175,39 +172,40 @@ def _fill_span(
     Returns the new top of the stack. Of cells that are linked with each other above or below, one
     is enough.
     """
-    row = links[r]
-    while c > 0 and row[c - 1] & RIGHT and _joins(normals, labels, r, c - 1, facing):
+    last = len(links) - 1
+    row, names, own = links[r], labels[r], planes[r]
+    over, names_over, own_over = links[max(r - 1, 0)], labels[max(r - 1, 0)], planes[max(r - 1, 0)]
+    under, names_under = links[min(r + 1, last)], labels[min(r + 1, last)]
+    own_under = planes[min(r + 1, last)]
+    while c > 0 and row[c - 1] & RIGHT and _joins(own, names, c - 1, wall, facing):
         c -= 1
     above = below = False
     while True:
-        labels[r, c] = label
-        up = r > 0 and (links[r - 1, c] & DOWN) != 0 and _joins(normals, labels, r - 1, c, facing)
-        down = (row[c] & DOWN) != 0 and _joins(normals, labels, r + 1, c, facing)
-        if up and not (above and links[r - 1, c - 1] & RIGHT):
+        names[c] = label
+        up = r > 0 and (over[c] & DOWN) != 0 and _joins(own_over, names_over, c, wall, facing)
+        down = (row[c] & DOWN) != 0 and _joins(own_under, names_under, c, wall, facing)
+        if up and not (above and over[c - 1] & RIGHT):
             stack[top, 0], stack[top, 1] = r - 1, c
             top += 1
-        if down and not (below and links[r + 1, c - 1] & RIGHT):
+        if down and not (below and under[c - 1] & RIGHT):
             stack[top, 0], stack[top, 1] = r + 1, c
             top += 1
         above, below = up, down
-        if not (row[c] & RIGHT and _joins(normals, labels, r, c + 1, facing)):
+        if not (row[c] & RIGHT and _joins(own, names, c + 1, wall, facing)):
             return top
         c += 1
 
 
 @kernel
 def _joins(
-    normals: NDArray[np.float32],
+    planes: NDArray[np.float32],
     labels: NDArray[np.int32],
-    r: int,
     c: int,
-    facing: NDArray[np.float32],
+    wall: bool,
+    facing: tuple[np.float32, np.float32, np.float32],
 ) -> bool:
-    """Whether a cell is free, and faces where the wall does that it may join."""
-    if labels[r, c] != 0:
+    """Whether a cell of a row is free, and faces where the wall does that it may join."""
+    if labels[c] != 0:
         return False
-    if len(facing) == 0:
-        return True
-    n = normals[r, c]
-    dot = facing[0] * n[0] + facing[1] * n[1] + facing[2] * n[2]
-    return bool(dot >= SAME_WALL_COS)
+    dot = facing[0] * planes[NX, c] + facing[1] * planes[NY, c] + facing[2] * planes[NZ, c]
+    return not wall or dot >= SAME_WALL_COS

@@ -19,7 +19,8 @@ class Labelled:
 
     - `size_px`: pixels of the depth image along one of its own. `intrinsics`: fx, fy, cx, cy in
       its own. `returning`: the part of it in which the sensor can return.
-    - `border`: cells of `cell` of its own pixels in which a surface's border may lie.
+    - `border`: cells of `cell` of its own pixels in which a surface's border may lie; `near`: those
+      in which there is any of it.
     """
 
     labels: NDArray[np.int32]
@@ -27,6 +28,7 @@ class Labelled:
     intrinsics: NDArray[np.float64]
     returning: Rectangle
     border: NDArray[np.bool_]
+    near: NDArray[np.bool_]
     cell: int
     size_px: int
 
@@ -46,7 +48,7 @@ class Labelled:
         u0, v0, u1, v1 = returning
         whole = (-(-u0 // size), -(-v0 // size), u1 // size, v1 // size)
         everywhere = np.ones(labels.shape, np.bool_)
-        return cls(labels, _cell_depths(planes), smaller, whole, everywhere, 1, size)
+        return cls(labels, _cell_depths(planes), smaller, whole, everywhere, everywhere, 1, size)
 
     @classmethod
     def of_pixels(
@@ -61,39 +63,80 @@ class Labelled:
     ) -> Labelled:
         """The depth image itself, the wanted labels (n_labels,) settled to the pixel."""
         strays = (cells.noise, softness_m)
-        out, border = pixel_labels(depth_m, cells.planes, labels, wanted, cells.size_px, strays)
-        return cls(out, depth_m, intrinsics, returning, border, cells.size_px, 1)
+        size = cells.size_px
+        out, border, near = pixel_labels(depth_m, cells.planes, labels, wanted, size, strays)
+        return cls(out, depth_m, intrinsics, returning, border, near, size, 1)
 
-    def box_of(self, cell_box: tuple[int, int, int, int], size_px: int) -> Rectangle:
-        """Half-open box in its own pixels around a box of cells of `size_px`, and one more."""
-        scale = size_px // self.size_px
-        height, width = self.labels.shape
-        c0, r0, c1, r1 = cell_box
-        u0, v0 = max(c0 - 1, 0) * scale, max(r0 - 1, 0) * scale
-        return u0, v0, min((c1 + 1) * scale, width), min((r1 + 1) * scale, height)
+
+@kernel
+def runs_by_label(
+    labels: NDArray[np.int32], near: NDArray[np.bool_], cell: int, wanted: NDArray[np.bool_]
+) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Runs of wanted labels along rows, label by label, as (v, first u, last u + 1): (n, 3).
+
+    Those of label k are `runs[starts[k]:starts[k + 1]]`, in the order of the image. Nothing wanted
+    lies outside of the `near` cells (rows, cols) of `cell` pixels.
+    """
+    rows, cols = near.shape
+    found, count = np.empty((np.count_nonzero(near) * cell * cell, 4), np.int32), 0
+    starts = np.zeros(len(wanted) + 1, np.int64)
+    spans = np.empty((cols, 2), np.int32)
+    for r in range(rows):
+        n_spans = _spans_of(near[r], cell, spans)
+        for v in range(r * cell, (r + 1) * cell):
+            line = labels[v]
+            for n in range(n_spans):
+                u, end = spans[n, 0], spans[n, 1]
+                while u < end:
+                    k, first = line[u], u
+                    while u < end and line[u] == k:
+                        u += 1
+                    if wanted[k]:
+                        found[count, 0], found[count, 1] = k, v
+                        found[count, 2], found[count, 3] = first, u
+                        starts[k + 1] += 1
+                        count += 1
+    for n in range(len(wanted)):
+        starts[n + 1] += starts[n]
+    runs, fill = np.empty((count, 3), np.int32), starts[:-1].copy()
+    for n in range(count):
+        at = fill[found[n, 0]]
+        fill[found[n, 0]] += 1
+        runs[at, 0], runs[at, 1], runs[at, 2] = found[n, 1], found[n, 2], found[n, 3]
+    return runs, starts
+
+
+@kernel
+def _spans_of(near: NDArray[np.bool_], cell: int, spans: NDArray[np.int32]) -> int:
+    """Writes from where to where, in pixels, the near cells of a row reach; how many spans."""
+    c = n = 0
+    while c < len(near):
+        first = c
+        while c < len(near) and near[c]:
+            c += 1
+        if c > first:
+            spans[n, 0], spans[n, 1] = first * cell, c * cell
+            n += 1
+        c += 1
+    return n
 
 
 @kernel
 def members_of(
-    labels: NDArray[np.int32], label: int, box: tuple[int, int, int, int]
+    runs: NDArray[np.int32], width: int
 ) -> tuple[NDArray[np.int32], tuple[int, int, int, int]]:
-    """Flat indexes (N,) of a label's pixels, in the order of the image, and the box around them.
-
-    Nothing of the label lies outside of `box` (u0, v0, u1, v1).
-    """
-    width = labels.shape[1]
-    u0, v0, u1, v1 = box
-    out, n = np.empty((u1 - u0) * (v1 - v0) + 1, np.int32), 0
-    low_u, low_v, high_u, high_v = u1, v1, u0 - 1, v0 - 1
-    for i in range(v0, v1):
-        before, start = n, i * width
-        for j in range(u0, u1):
-            out[n] = start + j
-            n += labels[i, j] == label
-        if n > before:
-            low_v, high_v = min(low_v, i), i
-            low_u, high_u = min(low_u, out[before] - start), max(high_u, out[n - 1] - start)
-    return out[:n].copy(), (low_u, low_v, high_u + 1, high_v + 1)
+    """Flat indexes (N,) of the pixels of runs (n, 3), n > 0, in an image, and the box around."""
+    total, left, right = 0, runs[0, 1], runs[0, 2]
+    for n in range(len(runs)):
+        total += runs[n, 2] - runs[n, 1]
+        left, right = min(left, runs[n, 1]), max(right, runs[n, 2])
+    out, i = np.empty(total, np.int32), 0
+    for n in range(len(runs)):
+        start = runs[n, 0] * width
+        for u in range(runs[n, 1], runs[n, 2]):
+            out[i] = start + u
+            i += 1
+    return out, (left, runs[0, 0], right, runs[-1, 0] + 1)
 
 
 @kernel

@@ -17,7 +17,7 @@ MOST_NOISE = 4.0
 """A sensor, or a scene of leaves and tangles, may seem this much noisier than a Kinect."""
 QUIET_SHARE = 0.35
 """At least this share of a view's windows is taken to lie on planes: they show the noise."""
-NOISE_ROWS = 10
+NOISE_ROWS = 20
 """Noise is told from every so manieth row of cells."""
 SIGMA_FLOOR, SIGMA_GROWTH = np.float32(FLOOR_M), np.float32(GROWTH_PER_M)
 SIGMA_NEAREST = np.float32(NEAREST_M)

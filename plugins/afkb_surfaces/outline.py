@@ -15,6 +15,8 @@ SMALLEST_HOLE_M2 = 0.004
 SIMPLER_PX = 1.0
 """The outline is simplified by at most this much."""
 SPECKLE_PX = 3
+GAP_SAMPLES = 32
+"""Pixels of a gap that are looked at; more would tell no more."""
 STANDS_M = 0.01
 """What rises this much over a surface stands on it or before it: what it hides is
 no hole."""
@@ -22,18 +24,18 @@ no hole."""
 
 def rings_of(
     image: Labelled,
-    members: NDArray[np.int32],
+    runs: NDArray[np.int32],
     box: Rectangle,
     plane: NDArray[np.float64],
     T_map_camera: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], ...]:
     """Outer ring, then holes, each (N, 2), open, m; empty where too little is seen for a ring.
 
-    `members`: flat indexes of the surface's pixels in the image; `box` (u0, v0, u1, v1) holds
-    them; `plane` (3,), z = p0 x + p1 y + p2. What stands on or before the surface is bridged. Of
-    parts that nothing bridges the largest is told.
+    `runs` (n, 3): the surface's pixels in the image (see `runs_by_label`); `box` (u0, v0, u1, v1)
+    holds them; `plane` (3,), z = p0 x + p1 y + p2. What stands on or before the surface is
+    bridged. Of parts that nothing bridges the largest is told.
     """
-    mask = bridged(members, box, image.depth_m, plane, image.intrinsics, T_map_camera)
+    mask = bridged(runs, box, image.depth_m, plane, image.intrinsics, T_map_camera)
     outlines, family = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_SIMPLE)
     if not outlines:
         return ()
@@ -64,7 +66,7 @@ def _ring(
 
 @kernel
 def bridged(
-    members: NDArray[np.int32],
+    runs: NDArray[np.int32],
     box: tuple[int, int, int, int],
     depth_m: NDArray[np.float32],
     plane: NDArray[np.float64],
@@ -76,24 +78,35 @@ def bridged(
     Gaps of a few pixels are speckle, and are closed as well.
     """
     u0, v0, u1, v1 = box
-    width = depth_m.shape[1]
     mask = np.zeros((v1 - v0, u1 - u0), np.uint8)
-    i = j = -1
-    for n in range(len(members)):
-        last, j = j, members[n] - i * width
-        if i < 0 or j >= width:
-            i = members[n] // width
-            j = members[n] - i * width
-            last = j
-        gap = j - last - 1
-        if gap > 0:
-            hiding = 0
-            for k in range(last + 1, j):
-                hiding += _rises(depth_m[i, k], k, i, plane, intrinsics, T)
-            if gap <= SPECKLE_PX or 4 * hiding >= 3 * gap:
-                mask[i - v0, last + 1 - u0 : j - u0] = 1
-        mask[i - v0, j - u0] = 1
+    for n in range(len(runs)):
+        v, first, end = runs[n]
+        if n > 0 and runs[n - 1, 0] == v:
+            before = runs[n - 1, 2]
+            if _hides(depth_m[v], before, first, v, plane, intrinsics, T):
+                first = before
+        mask[v - v0, first - u0 : end - u0] = 1
     return mask
+
+
+@kernel
+def _hides(
+    row: NDArray[np.float32],
+    start: int,
+    end: int,
+    v: int,
+    plane: NDArray[np.float64],
+    intrinsics: NDArray[np.float64],
+    T: NDArray[np.float64],
+) -> bool:
+    """Whether what a row shows from start to end is speckle, or rises over the plane."""
+    if end - start <= SPECKLE_PX:
+        return True
+    hiding = looked = 0
+    for k in range(start, end, 1 + (end - start) // GAP_SAMPLES):
+        hiding += _rises(row[k], k, v, plane, intrinsics, T)
+        looked += 1
+    return 4 * hiding >= 3 * looked
 
 
 @kernel

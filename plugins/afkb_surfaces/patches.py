@@ -13,6 +13,8 @@ from afkb_surfaces.cells import COUNT, DEPTH, X, Y, Z
 from afkb_surfaces.moments import CELL
 
 HEIGHT_BIN_M = 0.004
+MOST_CELLS = 1000
+"""Of a patch with more cells a share of at least half as many tells its height and its plane."""
 SAMPLES = 500
 """Cells of which percentiles are taken; more would tell no more."""
 
@@ -43,33 +45,52 @@ def measure_patches(
     that a cell takes up; a level one covers the more, the more grazing it is seen.
     """
     out = np.zeros((len(starts) - 1, N_MEASURES))
-    cols = planes.shape[2]
     for k in range(len(out)):
-        n = starts[k + 1] - starts[k]
-        if n < least_cells or not wanted[k]:
+        own = order[starts[k] : starts[k + 1]]
+        if len(own) < least_cells or not wanted[k]:
             continue
-        rc, p = np.empty((n, 2), np.int64), np.empty((n, 5))
-        r = order[starts[k]] // cols
-        for i in range(n):
-            while order[starts[k] + i] >= (r + 1) * cols:
-                r += 1
-            c = order[starts[k] + i] - r * cols
-            rc[i, 0], rc[i, 1] = r, c
-            p[i, 0], p[i, 1], p[i, 2] = planes[r, X, c], planes[r, Y, c], planes[r, Z, c]
-            p[i, 3], weight = planes[r, DEPTH, c], planes[r, COUNT, c]
-            p[i, 4] = weight / 9.0 if weight > CELL * CELL else weight
         m = out[k]
-        m[CELLS] = n
+        m[CELLS] = len(own)
+        p = _look_through(own, planes, m)
         m[HEIGHT] = mode_height(p)
         _fit_plane(p, m)
-        thin = (n + SAMPLES - 1) // SAMPLES
+        thin = (len(p) + SAMPLES - 1) // SAMPLES
         m[NEAREST], m[MEDIAN] = percentiles(p[::thin, 3], 1.0, 50.0)
-        _span(rc, p, m)
-        above = max(camera_height_m - m[HEIGHT], 0.01)
-        for i in range(n):
-            m[PIXELS] += p[i, 4]
-            m[AREA] += p[i, 3] ** 3 * cell_rad**2 / above
+        m[LENGTH] = _length(p)
+        m[AREA] *= cell_rad**2 / max(camera_height_m - m[HEIGHT], 0.01)
     return out
+
+
+@kernel
+def _look_through(
+    own: NDArray[np.int64], planes: NDArray[np.float32], m: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """x, y, z, depth, column and row of the cells of a patch, or of a share of them: (n, 6).
+
+    Sums and spans are of all cells and go to `m`; AREA yet has to be turned to m2.
+    """
+    cols, thin = planes.shape[2], 1 + len(own) // MOST_CELLS
+    p = np.empty(((len(own) + thin - 1) // thin, 6))
+    r = own[0] // cols
+    left, right, pixels, cubes = cols, -1, 0.0, 0.0
+    x0, x1, y0, y1 = np.inf, -np.inf, np.inf, -np.inf
+    for i in range(len(own)):
+        while own[i] >= (r + 1) * cols:
+            r += 1
+        c = own[i] - r * cols
+        x, y, z, weight = planes[r, X, c], planes[r, Y, c], planes[r, DEPTH, c], planes[r, COUNT, c]
+        left, right = min(left, c), max(right, c)
+        x0, x1, y0, y1 = min(x0, x), max(x1, x), min(y0, y), max(y1, y)
+        pixels += weight / 9.0 if weight > CELL * CELL else weight
+        cubes += z * z * z
+        if i % thin == 0:
+            q = p[i // thin]
+            q[0], q[1], q[2], q[3] = x, y, planes[r, Z, c], z
+            q[4], q[5] = c, r
+    m[X0], m[X1], m[Y0], m[Y1] = x0, x1, y0, y1
+    m[C0], m[C1], m[R0], m[R1] = left, right, own[0] // cols, r
+    m[PIXELS], m[AREA] = pixels, cubes
+    return p
 
 
 @kernel
@@ -119,18 +140,12 @@ def _fit_plane(p: NDArray[np.float64], m: NDArray[np.float64]) -> None:
 
 
 @kernel
-def _span(rc: NDArray[np.int64], p: NDArray[np.float64], m: NDArray[np.float64]) -> None:
-    """What cells span in the map and in the image, and how long they are along their main axis."""
-    n = len(rc)
-    m[X0] = m[Y0] = m[C0] = m[R0] = np.inf
-    m[X1] = m[Y1] = m[C1] = m[R1] = -np.inf
+def _length(p: NDArray[np.float64]) -> float:
+    """How long a patch is in the image along its main axis, cells; `p` (n, 6) tells its cells."""
+    n = len(p)
     sr = sc = srr = src = scc = 0.0
     for i in range(n):
-        m[X0], m[X1] = min(m[X0], p[i, 0]), max(m[X1], p[i, 0])
-        m[Y0], m[Y1] = min(m[Y0], p[i, 1]), max(m[Y1], p[i, 1])
-        r, c = float(rc[i, 0]), float(rc[i, 1])
-        m[R0], m[R1] = min(m[R0], r), max(m[R1], r)
-        m[C0], m[C1] = min(m[C0], c), max(m[C1], c)
+        c, r = p[i, 4], p[i, 5]
         sr, sc = sr + r, sc + c
         srr, src, scc = srr + r * r, src + r * c, scc + c * c
     rr, cc, cross = srr / n - (sr / n) ** 2, scc / n - (sc / n) ** 2, src / n - sr * sc / (n * n)
@@ -138,6 +153,6 @@ def _span(rc: NDArray[np.int64], p: NDArray[np.float64], m: NDArray[np.float64])
     along, up = math.cos(turn), math.sin(turn)
     low, high = np.inf, -np.inf
     for i in range(n):
-        t = along * rc[i, 1] + up * rc[i, 0]
+        t = along * p[i, 4] + up * p[i, 5]
         low, high = min(low, t), max(high, t)
-    m[LENGTH] = high - low + 1.0
+    return high - low + 1.0

@@ -25,12 +25,13 @@ def pixel_labels(
     wanted: NDArray[np.bool_],
     size_px: int,
     strays_m: tuple[float, float],
-) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+) -> tuple[NDArray[np.int32], NDArray[np.bool_], NDArray[np.bool_]]:
     """Label (H, W) of each pixel that lies on its cell's plane or on one next to it; border cells.
 
     Only what lies within a cell of a `wanted` label (n_labels,) is labelled. Cells in the midst of
     a surface are taken whole: their planes were found flat. The cells (rows, cols) at a border of
-    a wanted label, the image's edge included, are told besides. `strays_m`: noise, as a multiple
+    a wanted label, the image's edge included, are told besides, and so are all within a cell of
+    one. `strays_m`: noise, as a multiple
     of `depth_sigma`, and softness by which pixels stray.
     """
     rows, cols = labels.shape
@@ -53,7 +54,7 @@ def pixel_labels(
                 n = _planes_around(r, c, planes, labels, strays_m, around, names)
                 own = names[0] if labels[r, c] > 0 else -1
                 _settle(depth_m, out, r * size_px, c * size_px, size_px, around, names[:n], own)
-    return out, border
+    return out, border, near
 
 
 @kernel
@@ -114,18 +115,19 @@ def _planes_around(
 
     Writes the nearest plane of each, by how much 1/z strays from it, and its label.
     """
-    n = 0
+    n, last = 0, np.int32(0)
     for k in range(9):
         i, j = r + RING[k, 0], c + RING[k, 1]
-        if not (0 <= i < labels.shape[0] and 0 <= j < labels.shape[1]) or labels[i, j] == 0:
+        if not (0 <= i < labels.shape[0] and 0 <= j < labels.shape[1]):
             continue
-        known = False
+        name = labels[i, j]
+        known = (name == 0) | (name == last)
         for m in range(n):
-            known |= names[m] == labels[i, j]
+            known |= names[m] == name
         if not known:
             z = planes[i, DEPTH, j]
             around[n, 0], around[n, 1] = planes[i, A, j], planes[i, B, j]
-            around[n, 2], names[n] = planes[i, C, j], labels[i, j]
+            around[n, 2], names[n], last = planes[i, C, j], name, name
             around[n, 3] = (REACH * strays_m[0] * depth_sigma(z) + strays_m[1]) / (z * z)
             n += 1
     return n
@@ -149,14 +151,13 @@ def _settle(
     for v in range(v0, v0 + size):
         for u in range(u0, u0 + size):
             z = depth_m[v, u]
-            if not z > np.float32(0):
-                continue
-            best, name = np.float32(np.inf), 0
+            best, name, settled = np.float32(np.inf), np.int32(0), False
+            # a pixel without depth lies on none: it is 1 off, of which 0 is allowed
             for k in range(len(names)):
                 at = around[k, 0] * np.float32(u) + around[k, 1] * np.float32(v) + around[k, 2]
                 off = abs(at * z - np.float32(1))
-                if off < min(best, around[k, 3] * z):
-                    best, name = off, names[k]
-                    if name == own:
-                        break
+                nearer = (off < min(best, around[k, 3] * z)) & (not settled)
+                best = off if nearer else best
+                name = names[k] if nearer else name
+                settled |= nearer & (names[k] == own)
             out[v, u] = name

@@ -22,12 +22,11 @@ from afkb_surfaces.describe import (
 )
 from afkb_surfaces.extents import footprint_of
 from afkb_surfaces.grouping import FLOOR_LABEL
-from afkb_surfaces.labelled import Labelled, members_of, pixels_of
+from afkb_surfaces.labelled import Labelled, members_of, pixels_of, runs_by_label
 from afkb_surfaces.outline import rings_of
 from afkb_surfaces.patches import (
     AREA,
     C0,
-    C1,
     CELLS,
     HEIGHT,
     LENGTH,
@@ -36,7 +35,6 @@ from afkb_surfaces.patches import (
     MIDDLE_Y,
     MIDDLE_Z,
     PIXELS,
-    R0,
     R1,
     SLOPE_X,
     SLOPE_Y,
@@ -106,9 +104,11 @@ class Supports:
         """The floor first, if it is seen, then the supports in the order of the image."""
         if self.measures[FLOOR_LABEL, PIXELS] >= LEAST_FLOOR_PIXELS * self._fineness**2:
             yield from self._floor(self.measures[FLOOR_LABEL].tolist())
-        borders = self._borders(self.image)
-        for label in np.flatnonzero(self.wanted):
-            yield from self._support(int(label), self.measures[label].tolist(), borders[label])
+        image, borders = self.image, self._borders(self.image)
+        runs, starts = runs_by_label(image.labels, image.near, image.cell, self.wanted)
+        for label in np.flatnonzero(self.wanted & (starts[1:] > starts[:-1])).tolist():
+            own = runs[starts[label] : starts[label + 1]]
+            yield from self._support(label, self.measures[label].tolist(), own, borders[label])
 
     def _borders(self, image: Labelled) -> NDArray[np.int64]:
         reach = round(REACH_PX * self._fineness) if image.size_px == 1 else 1
@@ -129,12 +129,10 @@ class Supports:
         return self.focal_px / KINECT_FOCAL_PX
 
     def _support(
-        self, label: int, m: list[float], border: NDArray[np.int64]
+        self, label: int, m: list[float], runs: NDArray[np.int32], border: NDArray[np.int64]
     ) -> Iterator[Detection]:
         image, size = self.image, self.cells.size_px
-        cell_box = (int(m[C0]), int(m[R0]), int(m[C1]) + 1, int(m[R1]) + 1)
-        box = image.box_of(cell_box, size)
-        members, box = members_of(image.labels, label, box)
+        members, box = members_of(runs, image.labels.shape[1])
         pixels, image_box = members, self._in_pixels(box)
         if image.size_px > 1:
             pixels = pixels_of(members, image.labels.shape[1], image.size_px, self.depth_m)
@@ -159,7 +157,7 @@ class Supports:
             {"area": area, "band_px": band, "pixels": len(pixels)},
             image_box,
             pixels,
-            rings_of(image, members, box, plane, self.T_map_camera),
+            rings_of(image, runs, box, plane, self.T_map_camera),
             is_cut(image_box, self.image_returning),
             self.cells.noise,
             step,

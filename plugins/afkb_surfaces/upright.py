@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,21 +47,20 @@ def measure_walls(
         if n < least_cells or not wanted[k]:
             continue
         m = out[k]
-        m[C0] = m[R0] = np.inf
-        m[C1] = m[R1] = -np.inf
         thin = (n + SAMPLES - 1) // SAMPLES
         p = np.empty(((n + thin - 1) // thin, 4))
-        r = order[starts[k]] // cols
+        first, last = order[starts[k]] // cols, order[starts[k + 1] - 1] // cols
+        left, right, r = cols, -1, first
         for i in range(n):
             while order[starts[k] + i] >= (r + 1) * cols:
                 r += 1
             c = order[starts[k] + i] - r * cols
-            m[R0], m[R1] = min(m[R0], r), max(m[R1], r)
-            m[C0], m[C1] = min(m[C0], c), max(m[C1], c)
+            left, right = min(left, c), max(right, c)
             if i % thin == 0:
                 q = p[i // thin]
                 q[0], q[1] = planes[r, X, c], planes[r, Y, c]
                 q[2], q[3] = planes[r, Z, c], planes[r, DEPTH, c]
+        m[C0], m[C1], m[R0], m[R1] = left, right, first, last
         low, high = percentiles(p[:, 2], 1.0, 99.0)
         m[NEAREST], m[MEDIAN] = percentiles(p[:, 3], 1.0, 50.0)
         m[SIZE] = cell_rad * m[MEDIAN]
@@ -98,44 +98,59 @@ def fitted_segment(
     return mx + start * ax, my + start * ay, mx + end * ax, my + end * ay, math.sqrt(total / n)
 
 
-def upright_detection(
-    m: list[float],
+def upright_detections(
+    measures: NDArray[np.float64],
     cells: Cells,
     returning: Rectangle,
     settings: SurfaceSettings,
     detector: str,
-) -> Detection | None:
-    """The bound that measures (N_MEASURES,) of upright cells speak of, or None.
+) -> Iterator[Detection]:
+    """The bounds that measures (n, N_MEASURES) of upright cells speak of.
 
-    Its height is what is seen of it; where the image cuts it, that is a lower bound.
+    A bound's height is what is seen of it; where the image cuts it, that is a lower bound.
     """
-    tall = m[HIGH] - m[LOW]
-    p = membership(tall, settings.bound_height_m)
-    x0, y0, x1, y1 = m[X0 : Y1 + 1]
-    length = math.hypot(x1 - x0, y1 - y0)
-    if p <= 0 or length * tall < settings.bound_area_m2:
-        return None
-    low, high, rms = max(m[LOW], 0.0), m[HIGH], m[RMS]
-    middle = ((x0 + x1) / 2, (y0 + y1) / 2, (low + high) / 2)
-    size, covariance = cells.size_px, np.zeros((3, 3))
-    covariance[0, 0] = covariance[1, 1] = (cells.noise * depth_sigma(m[MEDIAN])) ** 2 + 1e-4
-    covariance[2, 2] = 0.01
-    c0, c1, r0, r1 = (int(v) for v in m[C0 : R1 + 1])
-    image_box = (c0 * size, r0 * size, (c1 + 1) * size, (r1 + 1) * size)
-    return Detection(
-        detector=detector,
-        affordances={"BlockAbility": 0.97 * p},
-        box=OrientedBox(middle, (length, 0.02 + 2 * rms, high - low), math.atan2(y1 - y0, x1 - x0)),
-        position_xyz=np.array(middle),
-        covariance_xyz=covariance,
-        footprint_xy=_along(x0, y0, x1, y1, max(2, int(length / settings.footprint_step_m))),
-        n_pixels=int(m[CELLS]) * size * size,
-        range_m=m[NEAREST],
-        image_box=image_box,
-        segment_xy=np.array([[x0, y0], [x1, y1]]),
-        cut_by_image=is_cut(image_box, _to_cells(returning, size)),
-        measures={"height": tall, "length": length, "rms": rms},
-    )
+    size, whole = cells.size_px, _to_cells(returning, cells.size_px)
+    places, covariances = _places(measures, cells.noise)
+    for m, place, covariance in zip(measures.tolist(), places, covariances, strict=True):
+        tall, length = m[HIGH] - m[LOW], math.hypot(m[X1] - m[X0], m[Y1] - m[Y0])
+        p = membership(tall, settings.bound_height_m)
+        if p <= 0 or length * tall < settings.bound_area_m2:
+            continue
+        x0, y0, x1, y1 = m[X0 : Y1 + 1]
+        middle, yaw = tuple(place.tolist()), math.atan2(y1 - y0, x1 - x0)
+        c0, c1, r0, r1 = (int(v) for v in m[C0 : R1 + 1])
+        image_box = (c0 * size, r0 * size, (c1 + 1) * size, (r1 + 1) * size)
+        box_m = (length, 0.02 + 2 * m[RMS], m[HIGH] - max(m[LOW], 0.0))
+        yield Detection(
+            detector=detector,
+            affordances={"BlockAbility": 0.97 * p},
+            box=OrientedBox(middle, box_m, yaw),
+            position_xyz=place,
+            covariance_xyz=covariance,
+            footprint_xy=_along(x0, y0, x1, y1, max(2, int(length / settings.footprint_step_m))),
+            n_pixels=int(m[CELLS]) * size * size,
+            range_m=m[NEAREST],
+            image_box=image_box,
+            segment_xy=np.array([[x0, y0], [x1, y1]]),
+            cut_by_image=is_cut(image_box, whole),
+            measures={"height": tall, "length": length, "rms": m[RMS]},
+        )
+
+
+@kernel
+def _places(
+    measures: NDArray[np.float64], noise: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Middles (n, 3) of bounds, m, and how sure they are (n, 3, 3), m²."""
+    places, covariances = np.empty((len(measures), 3)), np.zeros((len(measures), 3, 3))
+    for n in range(len(measures)):
+        m = measures[n]
+        places[n, 0], places[n, 1] = (m[X0] + m[X1]) / 2, (m[Y0] + m[Y1]) / 2
+        places[n, 2] = (max(m[LOW], 0.0) + m[HIGH]) / 2
+        across = (noise * depth_sigma(m[MEDIAN])) ** 2 + 1e-4
+        covariances[n, 0, 0] = covariances[n, 1, 1] = across
+        covariances[n, 2, 2] = 0.01
+    return places, covariances
 
 
 @kernel

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from afkb_surfaces.borders import KINDS, count_borders
 from afkb_surfaces.cells import N_ROWS, X
 from afkb_surfaces.extents import footprint_of
-from afkb_surfaces.labelled import Labelled, members_of
+from afkb_surfaces.labelled import Labelled, members_of, runs_by_label
 from afkb_surfaces.outline import ring_area, rings_of
 from afkb_surfaces.patches import HEIGHT, RMS, TILT, measure_patches
 from afkb_surfaces.upright import fitted_segment
@@ -62,10 +62,14 @@ def test_an_outline_keeps_what_is_seen_through_and_bridges_what_stands_on_it() -
     labels[30:45, 30:45] = labels[60:70, 60:70] = 0
     depth = np.where(labels > 0, 1.0, 1.8).astype(np.float32)
     depth[60:70, 60:70] = 0.8
-    image = Labelled(labels, depth, INTRINSICS, (0, 0, 100, 100), labels > 0, 1, 1)
-    members, box = members_of(labels, 3, (0, 0, 100, 100))
+    wanted = np.array([False, False, False, True])
+    image = Labelled(labels, depth, INTRINSICS, (0, 0, 100, 100), labels > 0, labels > 0, 1, 1)
+    runs, starts = runs_by_label(labels, np.ones((25, 25), np.bool_), 4, wanted)
+    assert starts.tolist() == [0, 0, 0, 0, len(runs)]
+    members, box = members_of(runs, 100)
     assert box == (20, 20, 80, 80)
-    outer, hole = rings_of(image, members, box, np.array([0.0, 0.0, 1.0]), DOWN)
+    assert members.tolist() == np.flatnonzero(labels).tolist()
+    outer, hole = rings_of(image, runs, box, np.array([0.0, 0.0, 1.0]), DOWN)
     assert ring_area(outer) == pytest.approx(0.59**2, rel=0.01)
     assert 0.15**2 <= ring_area(hole) <= 0.16**2
     assert np.abs(hole.mean(axis=0) - [-0.12, 0.12]).max() < 0.02
