@@ -22,14 +22,17 @@ TALL_SHARE = (0.1, 0.4)
 """One looks over a cabinet from everywhere, past the edge of a wall from here and there."""
 LOW_JAMB = 0.6
 """P(doorway | one of its jambs is low): a cabinet that stands before the wall's end."""
+LOW_JAMB_IN_MAP = 0.3
+"""The same of a gap that only the map shows: every aisle between a counter and a wall is one,
+whereas a scan shows its jambs to a centimetre."""
 KNEE_JAMB, MOSTLY = 0.2, 0.5
 """The same of what is mostly knee-high, as a bed or a seat is."""
 WALL_BESIDE_M = (WALL_M - 0.2, WALL_M)
 """At least one jamb is of a wall: straight and tall for as long as the second. What is no longer
 than the first is a cabinet's or a refrigerator's side, or the picture that hangs there."""
-WALL_THICK_M = (0.5, 0.75)
-"""At least one jamb is as deep as a wall is thick, and noise blurs; between what is deeper on both
-sides, as wardrobes are, one walks along an aisle."""
+WALL_THICK_M = (0.5, 1.0)
+"""Of a gap that only the map shows at least one jamb is as deep as a wall is thick, and noise
+blurs; between what is deeper on both sides, as wardrobes are, one walks along an aisle."""
 OBSTRUCTED = (0.1, 0.4)
 """Share of the line between the jambs, on which something stands: a door leaf, or a shelf."""
 FAINT = 0.05
@@ -66,8 +69,13 @@ class DoorwayJudge:
         p *= 1 - ramp(self._stands_between(jambs_xy), *OBSTRUCTED)
         if p >= FAINT and not any(map(math.isnan, tall)):
             p *= ramp(max(runs_m(self._tall, jambs_xy, self._grid)), *WALL_BESIDE_M)
-            p *= 1 - ramp(min(thickness_m(self._tall, jambs_xy, self._grid)), *WALL_THICK_M)
         return p * room_to_room(jambs_xy, self.free, self._grid) if p >= FAINT else 0.0
+
+    def doorway_of_map(self, jambs_xy: Array, gap: float) -> float:
+        """The same of a gap that no single view has shown."""
+        p = self.doorway(jambs_xy, gap, LOW_JAMB_IN_MAP)
+        thinner = min(thickness_m(self._tall, jambs_xy, self._grid))
+        return p * (1 - ramp(thinner, *WALL_THICK_M))
 
     def _is_jamb(self, jamb_xy: Array, tall: float, low_jamb: float) -> float:
         """Probability that what stands at a point (1, 2), m, ends or hides the end of a wall."""

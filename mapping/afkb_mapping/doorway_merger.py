@@ -37,9 +37,6 @@ WIDTH_M: Limits = (0.55, 0.7, 1.8, 2.5)
 """How wide passages are, where nobody tells what the ontology at hand states."""
 REPEAT = 0.4
 """P(a gap by chance is seen again from elsewhere): so much is left of the doubt by each view."""
-LOW_JAMB_IN_MAP = 0.3
-"""P(doorway | one jamb is low) of a gap that only the map shows: every aisle between a counter and
-a wall is one, whereas a scan shows its jambs to a centimetre."""
 LIKELY = 0.5
 
 
@@ -127,7 +124,7 @@ class DoorwayMerger:
         """Gaps in what all views together have shown."""
         for jambs, plan in gaps_of_map(judge.free, judge.standing, grid, self._width_m):
             views = min(self._upright.views(jamb) for jamb in jambs)
-            p = judge.doorway(jambs, plan * (1 - REPEAT**views), LOW_JAMB_IN_MAP)
+            p = judge.doorway_of_map(jambs, plan * (1 - REPEAT**views))
             known = self._known(jambs)
             yield jambs, _seen(jambs, p, views, known.lintel_m if known else math.nan)
 
