@@ -31,7 +31,7 @@ class SeenGap:
     jambs: Array
     mass: float
     plan: list[float] = field(default_factory=list)
-    eyes: list[Array] = field(default_factory=list)
+    eyes: list[list[float]] = field(default_factory=list)
     lintels: list[float] = field(default_factory=list)
 
     @property
@@ -39,6 +39,12 @@ class SeenGap:
         """(2, 2) m, map frame: the mean of what the views show."""
         mean: Array = self.jambs / self.mass
         return mean
+
+    @property
+    def middle_xy(self) -> tuple[float, float]:
+        """Halfway between the jambs, m; asked of every gap in every view, hence no array."""
+        (ax, ay), (bx, by) = self.jambs.tolist()
+        return (ax + bx) / (2 * self.mass), (ay + by) / (2 * self.mass)
 
     def absorb(self, jambs_xy: Array, plan: float, lintel_m: float | None, eye_xy: Array) -> None:
         """Take in one more view of it."""
@@ -52,11 +58,12 @@ class SeenGap:
         """Count the view, unless it is from where an earlier one was."""
         if lintel_m is not None:
             self.lintels = [*self.lintels, lintel_m][-LINTELS_KEPT:]
-        near = [k for k, e in enumerate(self.eyes) if np.linalg.norm(e - eye_xy) < APART_M]
+        eye = eye_xy.tolist()
+        near = [k for k, e in enumerate(self.eyes) if math.dist(e, eye) < APART_M]
         if near:
             self.plan[near[0]] = max(self.plan[near[0]], plan)
         else:
-            self.eyes.append(eye_xy)
+            self.eyes.append(eye)
             self.plan.append(plan)
 
     @property

@@ -93,9 +93,10 @@ class DoorwayMerger:
             known.absorb(jambs, plan, lintel, eye_xy)
 
     def _known(self, jambs_xy: Array) -> SeenGap | None:
-        best, least = None, SAME_M
+        (ax, ay), (bx, by) = jambs_xy.tolist()
+        middle, best, least = ((ax + bx) / 2, (ay + by) / 2), None, SAME_M
         for gap in self._gaps:
-            off = float(np.linalg.norm(gap.jambs_xy.mean(axis=0) - jambs_xy.mean(axis=0)))
+            off = math.dist(gap.middle_xy, middle)
             if off < least and turn_between(gap.jambs_xy, jambs_xy) < SAME_RAD:
                 best, least = gap, off
         return best
