@@ -114,6 +114,10 @@ def describe_bound(scribe: Scribe, bound: Bound) -> None:
     scribe.say(node, "afn:length", float(np.hypot(*along)))
     scribe.say(node, "afn:yaw", float(np.arctan2(along[1], along[0])))
     scribe.say(node, "afn:observations", int(bound.observations))
+    if bound.sigmas is not None:
+        offset, turn = bound.sigmas
+        scribe.say(node, "afn:offsetSigma", float(offset))
+        scribe.say(node, "afn:yawSigma", float(turn))
     scribe.geometry(node, polygon_wkt(ends))
     scribe.say(node, "prov:wasGeneratedBy", *_makers(scribe, bound.generated_by))
     _in_room(scribe, node, bound.room)

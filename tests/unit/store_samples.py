@@ -120,7 +120,9 @@ def sample_map() -> TopologicalMap:
     return TopologicalMap(
         places=(RobotPlace("p1", 0, 0, 0, 1.5, 0, "room1"), RobotPlace("p2", 1, 1, 1.57, 9.25, 40)),
         entities=sample_entities(),
-        bounds=(Bound("b1", (-1, -0.3), (4.7, -0.3), 12, ("laser_bounds",), "room1"),),
+        bounds=(
+            Bound("b1", (-1, -0.3), (4.7, -0.3), 12, ("laser_bounds",), "room1", (0.01, 0.005)),
+        ),
         doorways=(Doorway("d1", 3.5, 1.0, 0.0, 0.9, ("room1", "room2")),),
         rooms=(
             Room("room1", 1, 1, 8.0, square(1, 1, 1.4), {"Kitchen": 0.7, "UnknownRoom": 0.3}),

@@ -155,3 +155,8 @@ def test_an_unknown_name_lists_the_library() -> None:
         named_query("@nothing")
     with pytest.raises(QueryError, match="no named query"):
         named_query("@../vocabulary")
+
+
+def test_a_bound_says_how_well_its_line_is_known(stored: StoredMap) -> None:
+    asked = "SELECT ?m ?rad { ?b a afn:Bound ; afn:offsetSigma ?m ; afn:yawSigma ?rad }"
+    assert ask(stored, asked) == [("0.01", "0.005")]
