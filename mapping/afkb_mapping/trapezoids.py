@@ -32,3 +32,12 @@ def membership(value: float, limits: Limits) -> float:
     if value < n1:
         return (value - z1) / (n1 - z1)
     return 1.0 if value <= n2 else (z2 - value) / (z2 - n2)
+
+
+def ramp(value: float, limits: tuple[float, float]) -> float:
+    """0 up to the first limit, 1 from the second on, straight in between.
+
+    >>> ramp(0.5, (0.0, 2.0))
+    0.25
+    """
+    return min(max((value - limits[0]) / (limits[1] - limits[0]), 0.0), 1.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from afkb.flow import Detection, View
 from afkb_containers.describe import container_detection
@@ -10,10 +11,9 @@ from afkb_containers.judge import LEAST_CLAIM, judge
 from afkb_containers.looks import look_at
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.sight import Sights, step_for
-from afkb_containers.solid import ramp
 from afkb_containers.sunk import sunk_containers
 from afkb_mapping.bodies import Stand, body_of, is_body
-from afkb_mapping.trapezoids import membership
+from afkb_mapping.trapezoids import membership, ramp
 
 ATTACHED = (0.08, 0.22)
 """Share of a thing's outline beyond which its surface goes on: below the first it stands free,
@@ -58,11 +58,12 @@ class ContainerDetector:
         low = stand is Stand.ON_FLOOR or m["height"] <= s.tallest_m - 0.02
         if size <= 0 or not low:
             return None
-        step = step_for(thing.n_pixels)
+        step, cut = step_for(thing.n_pixels), thing.cut_by_image or sights.cuts(thing)
         body = body_of(thing, view, step)
-        looks = look_at(body, sides, thing.cut_by_image, sights.every(step), s)
+        looks = look_at(body, sides, cut, sights.every(step), s)
         part = ramp(attached, ATTACHED_CLOSED) if stand is Stand.ON_SUPPORT else 0.0
-        verdict = judge(body, size, 1 - part, thing.cut_by_image, looks, s)
+        verdict = judge(body, size, 1 - part, cut, looks, s)
         if verdict.contains < LEAST_CLAIM:
             return None
-        return container_detection(body, thing, index, verdict, looks, self.name)
+        told = container_detection(body, thing, index, verdict, looks, self.name)
+        return replace(told, cut_by_image=cut)

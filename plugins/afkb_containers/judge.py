@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from afkb_containers.looks import Looks
 from afkb_containers.settings import ContainerSettings
-from afkb_containers.solid import convex, ramp, whole
+from afkb_containers.solid import convex, whole
 from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.openings import Top
-from afkb_mapping.trapezoids import membership
+from afkb_mapping.trapezoids import membership, ramp
 
 LEAST_CLAIM = 0.1
 CUT = 0.5

@@ -11,12 +11,12 @@ from afkb_containers.noise import Noise, noise_of
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.sight import Sight
 from afkb_containers.silhouette import Silhouette, silhouette_of
-from afkb_containers.solid import compact, ramp, sized
+from afkb_containers.solid import compact, sized
 from afkb_containers.spread import UNKNOWN, Spread, spread_of
 from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.openings import Opening, Top, look_at_top
 from afkb_mapping.order_statistics import percentile
-from afkb_mapping.trapezoids import membership
+from afkb_mapping.trapezoids import membership, ramp
 
 EDGE_SHARE = 1 / 525
 """Width of the mixed edge of a body, as a share of the focal length: a pixel of a Kinect's."""

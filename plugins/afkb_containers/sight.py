@@ -9,8 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import View
+from afkb.flow import Detection, View
 from afkb_mapping.depth_points import intrinsics_of
+from afkb_mapping.image_regions import Rectangle, is_cut, returning_rectangle
 from afkb_mapping.view_noise import noise_scale
 
 ENOUGH_PIXELS = 1500
@@ -57,6 +58,15 @@ class Sights:
     def _noise_scale(self) -> float:
         assert self._view.depth_m is not None
         return noise_scale(self._view.depth_m)
+
+    @cached_property
+    def _returning(self) -> Rectangle:
+        assert self._view.depth_m is not None
+        return returning_rectangle(self._view.depth_m)
+
+    def cuts(self, thing: Detection) -> bool:
+        """Whether a thing reaches the edge of what the sensor can return."""
+        return thing.image_box is not None and is_cut(thing.image_box, self._returning)
 
     def every(self, step: int) -> Sight:
         """The view in every such row and column."""

@@ -48,8 +48,10 @@ def silhouette_of(
     step = max(1, int(radius / LEAST_RADIUS_PX))
     nearer = percentile(body.depth_m, 2.0) - NEARER_M - NEARER_SIGMAS * sigma_m
     window = _window(body.u, body.v, depth_m, extent(body.u, body.v), step, nearer)
-    own = (window == OWN).astype(np.uint8)
-    unknown = (window == UNKNOWN) & (_hull_of(own) > 0)
+    seen = (window == OWN).astype(np.uint8)
+    # most of whose neighbours are the body's is a hole by noise
+    own = seen | cv2.medianBlur(seen, 3)
+    unknown = (window == UNKNOWN) & (own == 0) & (_hull_of(own) > 0)
     core = _core(own | unknown.astype(np.uint8), radius / step)
     known = (_hull_of(core) > 0) & ~unknown
     in_core = own & core

@@ -5,7 +5,7 @@ from __future__ import annotations
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.silhouette import Silhouette
 from afkb_containers.spread import Spread
-from afkb_mapping.trapezoids import membership
+from afkb_mapping.trapezoids import membership, ramp
 
 SOLIDITY = (0.70, 0.85)
 """Share of its core's convex hull that a body must fill: not at all below, fully above."""
@@ -15,6 +15,8 @@ STEM = (0.15, 0.30)
 """How far a body may reach below its core, as a share of its height: a lamp stands on a stem."""
 WHOLE = (0.50, 0.70)
 """Solidity of a hollow body, which may be seen through its handle: rails and chairs fall below."""
+NARROW_M = (0.025, 0.040)
+"""Width of a closed body: below the first are pens, tubes and slats."""
 SLENDER = (5.0, 8.0)
 """Height over width: posts and rods are above."""
 PLATE = (0.12, 0.20)
@@ -42,7 +44,8 @@ def sized(height_m: float, length_m: float, settings: ContainerSettings) -> floa
 def compact(height_m: float, spread: Spread, settings: ContainerSettings) -> float:
     """How much a thing is as thick and upright as a can or carton, 0 to 1."""
     slender = ramp(height_m / max(spread.width_m, 1e-3), SLENDER)
-    return _thick(spread, height_m, settings) * (1 - slender) * (1 - _leans(spread))
+    wide = ramp(spread.width_m, NARROW_M) * (1 - slender)
+    return _thick(spread, height_m, settings) * wide * (1 - _leans(spread))
 
 
 def _leans(spread: Spread) -> float:
@@ -67,11 +70,6 @@ def whole(outline: Silhouette, height_m: float) -> float:
 def _in_one(outline: Silhouette, height_m: float) -> float:
     stem = ramp(outline.stem_m / height_m, STEM)
     return ramp(outline.core_share, CORE_SHARE) * (1 - stem)
-
-
-def ramp(value: float, limits: tuple[float, float]) -> float:
-    """0 up to the first limit, 1 from the second on, straight in between."""
-    return min(max((value - limits[0]) / (limits[1] - limits[0]), 0.0), 1.0)
 
 
 def _tall(height_m: float, length_m: float, settings: ContainerSettings) -> float:

@@ -16,7 +16,6 @@ from afkb_containers.judge import LEAST_CLAIM
 from afkb_containers.rims import CELL_M, Rim, rims_among
 from afkb_containers.ring import RIM_CELLS, ring_around
 from afkb_containers.settings import ContainerSettings
-from afkb_containers.solid import ramp
 from afkb_mapping.bodies import supports_among
 from afkb_mapping.depth_points import intrinsics_of
 from afkb_mapping.from_above import box_around, hull_candidates
@@ -24,7 +23,7 @@ from afkb_mapping.grid_components import AREA, components
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
-from afkb_mapping.trapezoids import membership
+from afkb_mapping.trapezoids import membership, ramp
 
 LEAST_DEPTH_M = 0.05
 EDGE_M = 0.012
