@@ -25,7 +25,7 @@ bows more, and a carton shows a side or its top."""
 UNSEEN_THICKNESS = 0.80
 """How often a body that stands free is no plate, where noise hides how thick it is."""
 DEEP = (0.40, 0.60)
-LEAN_DEG = (4.0, 9.0)
+LEAN_DEG = (4.0, 8.0)
 """Cartons and cans stand upright; what leans further, and isn't this deep for its width, is a
 frame, a book or a screen. Levelling is off by one or two degrees."""
 FACE = (0.70, 0.85)
