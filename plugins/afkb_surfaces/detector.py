@@ -14,15 +14,13 @@ from afkb_surfaces.cells import Cells
 from afkb_surfaces.describe import KINECT_FOCAL_PX
 from afkb_surfaces.fragments import join_fragments
 from afkb_surfaces.grouping import (
-    SUPPORT,
     UPRIGHT,
     classify,
-    grow,
-    kinds_of_labels,
     links_of,
     renamed,
 )
 from afkb_surfaces.labelled import Labelled
+from afkb_surfaces.levels import Parts, grown_level
 from afkb_surfaces.patches import measure_patches
 from afkb_surfaces.settings import SurfaceSettings
 from afkb_surfaces.supports import LEAST_CELLS, LEAST_PIXELS, Supports, candidates
@@ -32,9 +30,6 @@ LEAST_WALL_CELLS = 20
 WORTH_A_LOOK = 0.9
 """What is lower than this part of the lowest bound isn't looked at closer."""
 UPRIGHT_WITHIN_RAD = math.radians(12)
-
-Parts = tuple[NDArray[np.int64], NDArray[np.int64]]
-"""Flat indexes of cells, label by label, and where each label begins (see `order_by_label`)."""
 
 
 class SurfaceDetector:
@@ -62,15 +57,12 @@ class SurfaceDetector:
         tilt = math.radians(s.normal_to_up_deg[3])
         kinds = classify(cells.planes, tilt, UPRIGHT_WITHIN_RAD, s.floor_m, cells.noise)
         links = links_of(cells.planes, kinds, s.step_m, cells.noise)
-        labels, highest = grow(cells.planes, kinds, links)
-        of_label = kinds_of_labels(labels, kinds, highest)
-        target = join_fragments(
-            view.depth_m, cells, labels, of_label == SUPPORT, intrinsics, T, s.step_m, s.gap_m
-        )
+        labels, of_label, supports = grown_level(cells, kinds, links, s.step_m)
+        target = join_fragments(view.depth_m, cells, supports, intrinsics, T, s.step_m, s.gap_m)
         labels = renamed(labels, target)
         returning = returning_rectangle(view.depth_m)
         upward, upright = of_label != UPRIGHT, of_label == UPRIGHT
-        every = np.ones(highest + 1, np.bool_)
+        every = np.ones(len(of_label), np.bool_)
         every[0] = upward[0] = False
         parts = order_by_label(labels.ravel(), every)
         walls = self._bounds(cells, parts, upright, returning, camera.fx)

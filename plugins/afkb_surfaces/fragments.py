@@ -8,7 +8,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb_mapping.image_regions import order_by_label
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma
@@ -65,8 +64,7 @@ def _closest(p: NDArray[np.float32], q: NDArray[np.float32]) -> tuple[float, int
 def join_fragments(
     depth_m: NDArray[np.float32],
     cells: Cells,
-    labels: NDArray[np.int32],
-    supports: NDArray[np.bool_],
+    parts: tuple[NDArray[np.int64], NDArray[np.int64]],
     intrinsics: NDArray[np.float64],
     T_map_camera: NDArray[np.float64],
     step_m: float,
@@ -74,12 +72,10 @@ def join_fragments(
 ) -> NDArray[np.int32]:
     """The label (n_labels,) that each joins: coplanar, with only an occluder between them.
 
-    `labels` (rows, cols) of cells; `supports` (n_labels,): those that may join.
+    `parts`: flat indexes of the cells that may join, label by label, and where each label begins.
     """
-    order, starts = order_by_label(labels.ravel(), supports)
     return _joined(
-        order,
-        starts,
+        *parts,
         depth_m,
         cells.planes,
         cells.size_px,

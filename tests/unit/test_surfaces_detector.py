@@ -57,6 +57,16 @@ def test_two_tables_with_the_floor_seen_between_them_stay_two() -> None:
     assert len(supports(view_of([FLOOR, left, right]))) == 2
 
 
+@pytest.mark.parametrize("step_m, tops", [(0.0, 1), (0.03, 2), (0.05, 2)])
+def test_a_top_seen_over_a_slightly_higher_one_is_another(step_m: float, tops: int) -> None:
+    low = Box((3.0, -1.0, 0.0), (3.9, 1.0, 0.42))
+    high = Box((2.4, -0.5, 0.0), (3.0, 0.5, 0.42 + step_m))
+    rng = np.random.default_rng(5)
+    found = supports(view_of([FLOOR, low, high], pitch_deg=15, rng=rng))
+    heights = sorted(d.measures["height"] for d in found)
+    assert heights == pytest.approx([0.42, 0.42 + step_m][-tops:], abs=0.004)
+
+
 def test_a_wall_blocks_and_does_not_support() -> None:
     found = SurfaceDetector().detect(view_of([FLOOR, WALL], pitch_deg=10))
     (wall,) = [d for d in found if d.affords("BlockAbility")]
