@@ -57,6 +57,17 @@ def scored(listed: Sequence[Row], claims: Sequence[Row]) -> Row:
     }
 
 
+def is_so(listed: Sequence[Row], claim: Row) -> bool | None:
+    """Whether one passes from room to room where a single view claims it.
+
+    None at the mouth of a corridor, and at a doorway with a side that the recording doesn't show.
+    """
+    hits = [e for e in listed if is_at(e, claim)]
+    if any(e["kind"] in COUNTED and e["jambs"] == 2 for e in hits):
+        return True
+    return None if any(e["kind"] in (*COUNTED, NEITHER) for e in hits) else False
+
+
 def rates(found: int, listed: int, right: int, claims: int) -> Row:
     """Recall and precision beside what they are of."""
     return {

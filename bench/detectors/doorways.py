@@ -5,54 +5,85 @@ With the laser, and from depth alone; what the views show is merged at their tru
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from afkb.flow import View
 from afkb_mapping.doorway_merger import DoorwayMerger
 from afkb_mapping.grid_input import insert_view
 from afkb_mapping.occupancy import GridBuilder
+from afkb_mapping.structure import PASSAGE
+from bench.calibration.measures import summary
 from bench.detectors.data import Asked, Home
-from bench.doorway_labels import list_for, rates, said, scored
+from bench.doorway_labels import Row, is_so, list_for, rates, said, scored
 
 NEEDS = ("homes",)
 WAYS = ("laser", "depth alone")
 
 
 def run(asked: Asked) -> dict[str, Any]:
-    """Recall and precision by home and way, and of all homes that have a list."""
-    homes = {h.name: (h, list_for(h.folder)) for h in asked.homes}
+    """Recall and precision by home and way, and of all homes that have a list.
+
+    Beside it, of what single views state: how often it is so.
+    """
+    listed = {h.name: list_for(h.folder) for h in asked.homes}
     result: dict[str, Any] = {
-        "homes": {
-            name: {way: scored(listed, found_in(home, way)) for way in WAYS}
-            for name, (home, listed) in homes.items()
-            if listed is not None
-        },
-        "without a list": [name for name, (_, listed) in homes.items() if listed is None],
+        "homes": {},
+        "without a list": [name for name, of_home in listed.items() if of_home is None],
     }
+    stated: dict[str, list[tuple[float, bool]]] = {way: [] for way in WAYS}
+    for home in asked.homes:
+        of_home = listed[home.name]
+        if of_home is None:
+            continue
+        ways = result["homes"][home.name] = {}
+        for way in WAYS:
+            claims, found = seen_in(home, way)
+            ways[way] = scored(of_home, found)
+            judged = [(p, is_so(of_home, claim)) for p, claim in claims]
+            stated[way] += [(p, so) for p, so in judged if so is not None]
     for way in WAYS:
         scores = [ways[way] for ways in result["homes"].values()]
         sums = (sum(s[k] for s in scores) for k in ("found", "listed", "right", "claims"))
-        result[way] = rates(*sums)
+        result[way] = {**rates(*sums), "single views": _holds(stated[way])}
     return result
 
 
-def found_in(home: Home, way: str) -> list[dict[str, Any]]:
-    """The likely doorways of a home, in its world frame."""
+def _holds(stated: Sequence[tuple[float, bool]]) -> dict[str, Any] | None:
+    """How well what single views state comes true; None where they state nothing."""
+    if not stated:
+        return None
+    p, right = np.array(stated, dtype=np.float64).T
+    return summary(p, right, np.full(len(p), PASSAGE))
+
+
+def seen_in(home: Home, way: str) -> tuple[list[tuple[float, Row]], list[Row]]:
+    """What single views claim, with its probability, and the likely doorways of the home.
+
+    In its world frame.
+    """
     detector = home.host.detectors(["doorways"])[0]
     merger, grid = DoorwayMerger(), GridBuilder()
+    claims: list[tuple[float, Row]] = []
     for view in home.views():
         seen: View = replace(view, scan=None, T_base_laser=None) if way != "laser" else view
-        merger.add(seen, detector.detect(seen, ()))
+        detections = detector.detect(seen, ())
+        merger.add(seen, detections)
         insert_view(grid, seen)
-    return [
+        for d in detections:
+            x, y, _ = d.box.center_xyz
+            claims.append((d.affordances[PASSAGE], {"x": x, "y": y, "yaw": d.box.yaw}))
+    found = [
         {
             **{k: round(getattr(d, k), 3) for k in ("x", "y", "yaw", "width", "probability")},
             "views": d.views,
         }
         for d in merger.doorways(grid.grid())
     ]
+    return claims, found
 
 
 def table(result: dict[str, Any]) -> Iterator[str]:
@@ -65,5 +96,11 @@ def table(result: dict[str, Any]) -> Iterator[str]:
                 yield f"  wrong: {place} (p {c['probability']:.2f})"
     for way in WAYS:
         yield f"all homes, {way}: {said(result[way])}"
+        if holds := result[way]["single views"]:
+            yield (
+                f"  single views: {holds['samples']} claims, stated {holds['stated']:.2f} on "
+                f"average, {holds['right']:.2f} are so, expected calibration error "
+                f"{holds['ece']:.3f}"
+            )
     if result["without a list"]:
         yield f"no list of doorways: {', '.join(result['without a list'])}"
