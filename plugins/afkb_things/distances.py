@@ -1,4 +1,4 @@
-"""How far points lie from the surface of simple shapes that stand on a support."""
+"""How far points lie from the surface of simple shapes that stand on a support, and its slopes."""
 
 from __future__ import annotations
 
@@ -12,11 +12,8 @@ from afkb_mapping.kernels import kernel
 BOX, CYLINDER, LYING, SPHERE, CONE, SUPERQUADRIC = range(6)
 """Kinds by number; a lying cylinder is one whose axis is level."""
 N_PARAMETERS = (6, 4, 5, 4, 5, 8)
-STEP = 1e-5
-"""Metres, or radians, by which slopes are taken."""
-PULL = 1e-3
-"""Weight of a parameter's way from its start, against that of a point's distance."""
 LEAST_SIDE_M = 0.004
+TINY = 1e-9
 
 
 @kernel
@@ -70,98 +67,6 @@ def _capped(side: float, cap: float) -> float:
 
 
 @kernel
-def fit(
-    kind: int,
-    points: NDArray[np.float64],
-    base_m: float,
-    start: NDArray[np.float64],
-    scale_m: float,
-    rounds: int,
-) -> NDArray[np.float64]:
-    """Parameters by damped, reweighted least squares of the distances of points (N, 3).
-
-    What lies further off than `scale_m` counts little: the inside of a hollow, a handle. A slight
-    pull to the start holds what nothing is seen of.
-    """
-    p, n = start.copy(), len(start)
-    damping, best = 1e-3, _cost(kind, points, base_m, p, start, scale_m)
-    row = np.empty(n)
-    for _ in range(rounds):
-        left, right = np.zeros((n, n)), np.zeros(n)
-        for k in range(len(points)):
-            x, y, z = points[k, 0], points[k, 1], points[k, 2]
-            d = distance(kind, x, y, z, p, base_m)
-            w = 1.0 / (1.0 + (d / scale_m) ** 2) ** 2
-            for i in range(n):
-                was = p[i]
-                p[i] = was + STEP
-                row[i] = (distance(kind, x, y, z, p, base_m) - d) / STEP
-                p[i] = was
-            for i in range(n):
-                right[i] -= w * row[i] * d
-                for j in range(n):
-                    left[i, j] += w * row[i] * row[j]
-        pull = PULL * len(points)
-        for i in range(n):
-            left[i, i] += pull
-            right[i] -= pull * (p[i] - start[i])
-        for i in range(n):
-            left[i, i] *= 1.0 + damping
-        tried = bounded(kind, p + np.linalg.solve(left, right), base_m)
-        cost = _cost(kind, points, base_m, tried, start, scale_m)
-        if cost < best:
-            done = best - cost < 1e-3 * best
-            p, best, damping = tried, cost, damping * 0.3
-            if done:
-                break
-        else:
-            damping *= 10.0
-    return p
-
-
-@kernel
-def bounded(kind: int, p: NDArray[np.float64], base_m: float) -> NDArray[np.float64]:
-    """The parameters, kept to what a shape can have."""
-    if kind in (BOX, SUPERQUADRIC):
-        p[2], p[3], p[5] = (
-            max(p[2], LEAST_SIDE_M),
-            max(p[3], LEAST_SIDE_M),
-            max(p[5], base_m + LEAST_SIDE_M),
-        )
-        if kind == SUPERQUADRIC:
-            p[6], p[7] = min(max(p[6], 0.1), 1.9), min(max(p[7], 0.1), 1.9)
-    elif kind == CYLINDER:
-        p[2], p[3] = max(p[2], LEAST_SIDE_M), max(p[3], base_m + LEAST_SIDE_M)
-    elif kind == LYING:
-        p[2], p[3] = max(p[2], LEAST_SIDE_M), max(p[3], LEAST_SIDE_M)
-    elif kind == SPHERE:
-        p[3] = max(p[3], LEAST_SIDE_M)
-    else:
-        p[2], p[3], p[4] = max(p[2], 0.0), max(p[3], 0.0), max(p[4], base_m + LEAST_SIDE_M)
-    return p
-
-
-@kernel
-def _cost(
-    kind: int,
-    points: NDArray[np.float64],
-    base_m: float,
-    p: NDArray[np.float64],
-    start: NDArray[np.float64],
-    scale_m: float,
-) -> float:
-    """What `fit` makes small: Geman and McClure's loss of the distances, and the pull."""
-    total = 0.0
-    for k in range(len(points)):
-        d = distance(kind, points[k, 0], points[k, 1], points[k, 2], p, base_m) / scale_m
-        total += d * d / (1.0 + d * d)
-    total *= scale_m * scale_m
-    for i in range(len(p)):
-        total += PULL * len(points) * (p[i] - start[i]) ** 2
-    return total
-
-
-@kernel
 def residuals(
     kind: int,
     points: NDArray[np.float64],
@@ -179,3 +84,147 @@ def residuals(
             total += d * d
             count += 1
     return math.sqrt(cut / len(points)), math.sqrt(total / max(count, 1))
+
+
+@kernel
+def slopes(
+    kind: int,
+    x: float,
+    y: float,
+    z: float,
+    p: NDArray[np.float64],
+    base_m: float,
+    out: NDArray[np.float64],
+) -> None:
+    """How a point's `distance` changes with each parameter, into `out` (n,)."""
+    x, y = x - p[0], y - p[1]
+    if kind == SPHERE:
+        off = max(math.sqrt(x * x + y * y + (z - p[2]) ** 2), TINY)
+        out[0], out[1], out[2], out[3] = -x / off, -y / off, (p[2] - z) / off, -1.0
+    elif kind == LYING:
+        _lying_slopes(x, y, z - base_m, p, out)
+    elif kind in (CYLINDER, CONE):
+        _upright_slopes(kind, x, y, z - base_m, p, base_m, out)
+    else:
+        _cornered_slopes(kind, x, y, z, p, base_m, out)
+
+
+@kernel
+def _lying_slopes(
+    x: float, y: float, z: float, p: NDArray[np.float64], out: NDArray[np.float64]
+) -> None:
+    cos, sin = math.cos(p[4]), math.sin(p[4])
+    along, across = x * cos + y * sin, y * cos - x * sin
+    off = max(math.sqrt(across * across + (z - p[2]) ** 2), TINY)
+    side, cap = _shares(off - p[2], abs(along) - p[3])
+    by_across, by_along = side * across / off, cap * (1.0 if along > 0 else -1.0)
+    out[0] = by_across * sin - by_along * cos
+    out[1] = -by_across * cos - by_along * sin
+    out[2] = side * ((p[2] - z) / off - 1.0)
+    out[3] = -cap
+    out[4] = by_along * across - by_across * along
+
+
+@kernel
+def _upright_slopes(
+    kind: int,
+    x: float,
+    y: float,
+    z: float,
+    p: NDArray[np.float64],
+    base_m: float,
+    out: NDArray[np.float64],
+) -> None:
+    top = 3 if kind == CYLINDER else 4
+    tall = p[top] - base_m
+    off = max(math.sqrt(x * x + y * y), TINY)
+    cap_m = abs(z - 0.5 * tall) - 0.5 * tall
+    by_top = -0.5 - (0.5 if z > 0.5 * tall else -0.5)
+    if kind == CYLINDER:
+        side, cap = _shares(off - p[2], cap_m)
+        out[0], out[1], out[2], out[3] = -side * x / off, -side * y / off, -side, cap * by_top
+        return
+    tall = max(tall, 1e-3)
+    slope = (p[3] - p[2]) / tall
+    lean = math.sqrt(1.0 + slope * slope)
+    gap = off - p[2] - slope * z
+    side, cap = _shares(gap / lean, cap_m)
+    # a steeper side is as much nearer as it leans, and lies elsewhere
+    by_slope = side * (-z / lean - gap * slope / lean**3)
+    out[0], out[1] = -side * x / (off * lean), -side * y / (off * lean)
+    out[2] = -side / lean - by_slope / tall
+    out[3] = by_slope / tall
+    out[4] = cap * by_top - by_slope * slope / tall
+
+
+@kernel
+def _cornered_slopes(
+    kind: int,
+    x: float,
+    y: float,
+    z: float,
+    p: NDArray[np.float64],
+    base_m: float,
+    out: NDArray[np.float64],
+) -> None:
+    """Of a box or a superquadric: through the slopes along its own axes."""
+    cos, sin = math.cos(p[4]), math.sin(p[4])
+    half = 0.5 * (p[5] - base_m)
+    x, y, z = x * cos + y * sin, y * cos - x * sin, z - base_m - half
+    if kind == BOX:
+        a, b, c = abs(x) - p[2], abs(y) - p[3], abs(z) - half
+        outside = math.sqrt(max(a, 0.0) ** 2 + max(b, 0.0) ** 2 + max(c, 0.0) ** 2)
+        if outside > 0.0:
+            by_a, by_b, by_c = max(a, 0.0) / outside, max(b, 0.0) / outside, max(c, 0.0) / outside
+        else:
+            most = max(a, b, c)
+            by_a = 1.0 if a == most else 0.0
+            by_b = 1.0 if b == most and a != most else 0.0
+            by_c = 1.0 - by_a - by_b
+        out[2], out[3], by_half = -by_a, -by_b, -by_c
+    else:
+        by_a, by_b, by_c, by_half = _superquadric_slopes(abs(x), abs(y), abs(z), p, half, out)
+    by_x, by_y = by_a * (1.0 if x > 0 else -1.0), by_b * (1.0 if y > 0 else -1.0)
+    out[0], out[1] = by_y * sin - by_x * cos, -by_x * sin - by_y * cos
+    out[4] = by_x * y - by_y * x
+    out[5] = 0.5 * (by_half - by_c * (1.0 if z > 0 else -1.0))
+
+
+@kernel
+def _superquadric_slopes(
+    a: float, b: float, c: float, p: NDArray[np.float64], half: float, out: NDArray[np.float64]
+) -> tuple[float, float, float, float]:
+    """Slopes along its axes and with its half height; those with its sides and exponents: `out`."""
+    e1, e2, half = p[6], p[7], max(half, 1e-3)
+    a, b, c = max(a, TINY), max(b, TINY), max(c, TINY)
+    log_a, log_b, log_c = math.log(a / p[2]), math.log(b / p[3]), math.log(c / half)
+    of_a, of_b, of_c = (
+        math.exp(2.0 / e2 * log_a),
+        math.exp(2.0 / e2 * log_b),
+        math.exp(2.0 / e1 * log_c),
+    )
+    flat = of_a + of_b
+    level = flat ** (e2 / e1)
+    f = max(level + of_c, 1e-9)
+    off, g = math.sqrt(a * a + b * b + c * c), f ** (-0.5 * e1)
+    by_f = 0.5 * e1 * off * g / f
+    by_flat = by_f * 2.0 / e1 * level / flat
+    by_up = by_f * 2.0 / e1 * of_c
+    out[2], out[3] = -by_flat * of_a / p[2], -by_flat * of_b / p[3]
+    log_flat = math.log(flat)
+    turned = level * log_flat * -e2 / (e1 * e1) + of_c * log_c * -2.0 / (e1 * e1)
+    out[6] = by_f * turned + 0.5 * off * g * math.log(f)
+    bent = log_flat / e1 - 2.0 / (e1 * e2) * (of_a * log_a + of_b * log_b) / flat
+    out[7] = by_f * level * bent
+    out_a = a / off * (1.0 - g) + by_flat * of_a / a
+    out_b = b / off * (1.0 - g) + by_flat * of_b / b
+    return out_a, out_b, c / off * (1.0 - g) + by_up / c, -by_up / half
+
+
+@kernel
+def _shares(side: float, cap: float) -> tuple[float, float]:
+    """How `_capped` changes with the distances from side and cap."""
+    if side > 0.0 and cap > 0.0:
+        off = math.sqrt(side * side + cap * cap)
+        return side / off, cap / off
+    return (1.0, 0.0) if side > cap else (0.0, 1.0)

@@ -17,9 +17,9 @@ from afkb_things.distances import (
     N_PARAMETERS,
     SPHERE,
     SUPERQUADRIC,
-    fit,
     residuals,
 )
+from afkb_things.fitting import fit
 
 SAMPLES = 48
 ROUNDS = 5

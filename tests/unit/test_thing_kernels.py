@@ -7,7 +7,17 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from afkb_things.distances import BOX, CONE, CYLINDER, LYING, SPHERE, SUPERQUADRIC, distance, fit
+from afkb_things.distances import (
+    BOX,
+    CONE,
+    CYLINDER,
+    LYING,
+    SPHERE,
+    SUPERQUADRIC,
+    distance,
+    slopes,
+)
+from afkb_things.fitting import fit
 from afkb_things.patches import contacts, patches_of
 from afkb_things.roots import roots_of
 from afkb_things.valleys import valleys
@@ -100,3 +110,24 @@ def test_the_top_of_a_box_is_carried_by_its_table() -> None:
     heights, areas = np.array([1.5, 0.9, 0.74]), np.array([0.01, 0.01, 0.6])
     large = areas > 0.1
     assert roots_of(heights, areas, large, raster, 0.5).tolist() == [0, 2, 2]
+
+
+PARAMETERS = {
+    BOX: (0.1, 0.2, 0.05, 0.03, 0.4, 0.85),
+    CYLINDER: (0.1, 0.2, 0.04, 0.85),
+    LYING: (0.1, 0.2, 0.04, 0.1, 0.4),
+    SPHERE: (0.1, 0.2, 0.77, 0.05),
+    CONE: (0.1, 0.2, 0.03, 0.06, 0.85),
+    SUPERQUADRIC: (0.1, 0.2, 0.05, 0.03, 0.4, 0.85, 0.4, 0.7),
+}
+
+
+@pytest.mark.parametrize("kind", PARAMETERS)
+def test_slopes_are_what_a_small_step_changes(kind: int) -> None:
+    p, step = np.array(PARAMETERS[kind]), 1e-6
+    for x, y, z in RNG.uniform(-0.1, 0.1, (30, 3)) + np.array([0.1, 0.2, 0.775]):
+        found = np.zeros(len(p))
+        slopes(kind, x, y, z, p, 0.7, found)
+        for i, one in enumerate(np.eye(len(p)) * step):
+            ahead, back = (distance(kind, x, y, z, p + s, 0.7) for s in (one, -one))
+            assert found[i] == pytest.approx((ahead - back) / (2 * step), abs=1e-4)
