@@ -61,30 +61,45 @@ def hull_candidates(xy: NDArray[np.floating | np.integer]) -> NDArray[np.float32
     Whatever lies within the octagon of the points that reach farthest in eight directions can't
     be one (Akl and Toussaint, 1978); that leaves few to sort.
     """
-    return _outside_octagon(np.array(xy[:, :2], np.float32, order="C"))
+    return _outside_octagon(xy)
 
 
 @kernel
-def _outside_octagon(p: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Points (N, 2) that don't lie within the octagon of the farthest; overwrites `p`."""
-    n = len(p)
+def _outside_octagon(xy: NDArray[np.floating | np.integer]) -> NDArray[np.float32]:
+    """Points (N, 2+) that don't lie within the octagon of the farthest."""
+    n = len(xy)
     corner = np.zeros(8, np.int64)
-    farthest = np.full(8, -np.inf)
+    x0 = s0 = y0 = d0 = math.inf
+    x1 = s1 = y1 = d1 = -math.inf
     for i in range(n):
-        x, y = float(p[i, 0]), float(p[i, 1])
-        reach = (x, x + y, y, y - x, -x, -x - y, -y, x - y)
-        for k in range(8):
-            if reach[k] > farthest[k]:
-                farthest[k], corner[k] = reach[k], i
+        x, y = np.float32(xy[i, 0]), np.float32(xy[i, 1])
+        s, d = x + y, y - x
+        if x > x1:
+            x1, corner[0] = x, i
+        if s > s1:
+            s1, corner[1] = s, i
+        if y > y1:
+            y1, corner[2] = y, i
+        if d > d1:
+            d1, corner[3] = d, i
+        if x < x0:
+            x0, corner[4] = x, i
+        if s < s0:
+            s0, corner[5] = s, i
+        if y < y0:
+            y0, corner[6] = y, i
+        if d < d0:
+            d0, corner[7] = d, i
     edges = np.zeros((8, 3))
     for k in range(8):
-        a, b = p[corner[k]], p[corner[(k + 1) % 8]]
-        edges[k, 0] = float(a[1]) - float(b[1])
-        edges[k, 1] = float(b[0]) - float(a[0])
-        edges[k, 2] = edges[k, 0] * float(a[0]) + edges[k, 1] * float(a[1])
-    kept = 0
+        a, b = corner[k], corner[(k + 1) % 8]
+        ax, ay = float(np.float32(xy[a, 0])), float(np.float32(xy[a, 1]))
+        edges[k, 0] = ay - float(np.float32(xy[b, 1]))
+        edges[k, 1] = float(np.float32(xy[b, 0])) - ax
+        edges[k, 2] = edges[k, 0] * ax + edges[k, 1] * ay
+    out, kept = np.empty((n, 2), np.float32), 0
     for i in range(n):
-        x, y = float(p[i, 0]), float(p[i, 1])
+        x, y = np.float32(xy[i, 0]), np.float32(xy[i, 1])
         within = True
         for k in range(8):
             if edges[k, 0] == 0 and edges[k, 1] == 0:
@@ -93,9 +108,12 @@ def _outside_octagon(p: NDArray[np.float32]) -> NDArray[np.float32]:
                 within = False
                 break
         if not within:
-            p[kept, 0], p[kept, 1] = p[i, 0], p[i, 1]
+            out[kept, 0], out[kept, 1] = x, y
             kept += 1
-    return p[: max(kept, min(n, 1))]  # all points may be one
+    if kept == 0 and n > 0:  # all points may be one
+        out[0, 0], out[0, 1] = xy[0, 0], xy[0, 1]
+        kept = 1
+    return out[:kept]
 
 
 def smallest_rectangle(

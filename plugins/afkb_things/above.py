@@ -142,30 +142,22 @@ def label_things(
     """
     rows, cols = depth_m.shape
     ox, oy = np.float32(origin_xy[0]), np.float32(origin_xy[1])
-    row, floor = np.empty((3, cols), np.float32), np.float32(FLOOR_M)
+    row, squares = np.empty((3, cols), np.float32), np.empty(cols, np.int32)
     labels = np.zeros((rows, cols), np.int16)
     overs = np.zeros((rows, cols), np.float32)
     us, vs, ks = np.empty((3, rows * cols), np.int32)
-    n = 0
+    over_squares, n = raster.ravel(), 0
     for v in range(rows):
         points_of_row(depth_m, v, intrinsics, T_map_camera, row, 0, cols)
+        _squares_of_row(depth_m[v], row, ox, oy, raster.shape, labels[v], squares)
         for u in range(cols):
-            z, h = depth_m[v, u], row[2, u]
-            if z <= 0:
-                continue
-            if h < floor:
-                labels[v, u] = -1
-                continue
-            x, y = row[0, u] - ox, row[1, u] - oy
-            i, j = int(x * CELLS_PER_M), int(y * CELLS_PER_M)
-            if not (0 <= i < raster.shape[0] and 0 <= j < raster.shape[1]):
-                continue
-            bits = raster[i, j]
+            bits = over_squares[squares[u]]
             if bits == 0:
                 continue
             if bits >> WALL_BIT != 0:
                 labels[v, u] = ON_WALL
                 continue
+            z, x, y, h = depth_m[v, u], row[0, u] - ox, row[1, u] - oy, row[2, u]
             rise = abs(slope[0] * u + slope[1] * v + slope[2])
             margin = max(low_m, 3.0 * noise * depth_sigma(z) * rise)
             k = -1
@@ -190,3 +182,30 @@ def label_things(
                     if large[k]:
                         break
     return labels, overs, us[:n], vs[:n], ks[:n]
+
+
+@kernel
+def _squares_of_row(
+    depth_m: NDArray[np.float32],
+    points: NDArray[np.float32],
+    origin_x: np.float32,
+    origin_y: np.float32,
+    shape: tuple[int, int],
+    labels: NDArray[np.int16],
+    squares: NDArray[np.int32],
+) -> None:
+    """Over which square of a raster (flat) each point of a row (3, W) lies; -1 in `labels`: floor.
+
+    Square 0, at the padded corner, is that of the floor, of what lies off the raster, and where
+    nothing returned. No branches: the compiler makes vector instructions of it.
+    """
+    rows, cols = np.int32(shape[0]), np.int32(shape[1])
+    floor = np.float32(FLOOR_M)
+    for u in range(len(depth_m)):
+        seen = depth_m[u] > 0
+        high = points[2, u] >= floor
+        labels[u] = np.int16(-1) if seen & (not high) else np.int16(0)
+        i = np.int32((points[0, u] - origin_x) * CELLS_PER_M)
+        j = np.int32((points[1, u] - origin_y) * CELLS_PER_M)
+        on = seen & high & (i >= 0) & (i < rows) & (j >= 0) & (j < cols)
+        squares[u] = i * cols + j if on else np.int32(0)

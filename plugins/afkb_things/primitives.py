@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import OrientedBox, Primitive
 from afkb_mapping.bodies import Body
+from afkb_mapping.kernels import kernel
 from afkb_things.distances import (
     BOX,
     CONE,
@@ -21,6 +22,8 @@ from afkb_things.distances import (
 )
 from afkb_things.fitting import fit
 
+BoxNumbers = tuple[float, float, float, float, float, float, float]
+"""Centre, size and yaw of a box."""
 SAMPLES = 48
 ROUNDS = 5
 DEEP_M = 0.010
@@ -41,60 +44,71 @@ def primitive_of(body: Body, box: OrientedBox) -> Primitive | None:
 
     `box` is the upright one around what is seen of it, which the shapes start from.
     """
-    points = body.points[:: max(1, len(body.points) // SAMPLES)].astype(np.float64)
-    sigma = body.sigma_m
-    deep = DEEP_M + 3.0 * sigma
-    best: tuple[float, float, int, NDArray[np.float64]] | None = None
+    points = body.points[:: max(1, len(body.points) // SAMPLES)]
+    kind, p, residual = _best_shape(points, (*box.center_xyz, *box.size_xyz, box.yaw), body.sigma_m)
+    return None if kind < 0 else _primitive(kind, p, box.bottom, residual)
+
+
+@kernel
+def _best_shape(
+    points: NDArray[np.float64], box: BoxNumbers, sigma_m: float
+) -> tuple[int, NDArray[np.float64], float]:
+    """Kind of the best shape, -1 for none, its parameters, and its residual, m."""
+    base_m, deep = box[2] - box[5] / 2, DEEP_M + 3.0 * sigma_m
+    best_kind, best, best_score, best_residual = -1, np.empty(0), math.inf, math.inf
     for kind in (BOX, CYLINDER, LYING, SPHERE, CONE, SUPERQUADRIC):
-        if best is not None and best[1] < GOOD_M + sigma and kind in (LYING, SUPERQUADRIC):
+        if best_residual < GOOD_M + sigma_m and kind in (LYING, SUPERQUADRIC):
             break
-        start = _start(kind, box)
-        found = fit(kind, points, box.bottom, start, 0.5 * deep, ROUNDS)
+        found = fit(kind, points, base_m, _start(kind, box), 0.5 * deep, ROUNDS)
         if not (np.isfinite(found).all() and _plausible(kind, found, box)):
             continue
-        cut, residual = residuals(kind, points, box.bottom, found, deep)
+        cut, residual = residuals(kind, points, base_m, found, deep)
         score = cut * (1.0 + PER_PARAMETER * N_PARAMETERS[kind])
-        if best is None or score < best[0]:
-            best = (score, residual, kind, found)
-    if best is None or best[0] > deep:
-        return None
-    return _primitive(best[2], best[3], box.bottom, best[1])
+        if score < best_score:
+            best_kind, best, best_score, best_residual = kind, found, score, residual
+    return (best_kind if best_score <= deep else -1), best, best_residual
 
 
-def _start(kind: int, box: OrientedBox) -> NDArray[np.float64]:
-    x, y, z = box.center_xyz
-    length, width, height = (max(s, 0.01) for s in box.size_xyz)
-    radius = 0.25 * (length + width)
-    starts = {
-        BOX: (x, y, length / 2, width / 2, box.yaw, box.top),
-        CYLINDER: (x, y, radius, box.top),
-        LYING: (x, y, height / 2, length / 2, box.yaw),
-        SPHERE: (x, y, z, radius),
-        CONE: (x, y, 0.9 * radius, radius, box.top),
-        SUPERQUADRIC: (x, y, length / 2, width / 2, box.yaw, box.top, 0.5, 0.5),
-    }
-    return np.array(starts[kind])
+@kernel
+def _start(kind: int, box: BoxNumbers) -> NDArray[np.float64]:
+    x, y, z = box[0], box[1], box[2]
+    length, width, height = max(box[3], 0.01), max(box[4], 0.01), max(box[5], 0.01)
+    top, yaw, radius = z + box[5] / 2, box[6], 0.25 * (length + width)
+    if kind == CYLINDER:
+        return np.array([x, y, radius, top])
+    if kind == LYING:
+        return np.array([x, y, height / 2, length / 2, yaw])
+    if kind == SPHERE:
+        return np.array([x, y, z, radius])
+    if kind == CONE:
+        return np.array([x, y, 0.9 * radius, radius, top])
+    if kind == BOX:
+        return np.array([x, y, length / 2, width / 2, yaw, top])
+    return np.array([x, y, length / 2, width / 2, yaw, top, 0.5, 0.5])
 
 
-def _plausible(kind: int, p: NDArray[np.float64], box: OrientedBox) -> bool:
+@kernel
+def _plausible(kind: int, p: NDArray[np.float64], box: BoxNumbers) -> bool:
     """Whether a shape is about as large as what is seen of it, and where that is."""
+    base_m, box_top = box[2] - box[5] / 2, box[2] + box[5] / 2
     if kind in (BOX, SUPERQUADRIC):
-        sides, top = (2 * p[2], 2 * p[3]), p[5]
+        one, other, top = 2 * p[2], 2 * p[3], p[5]
     elif kind == LYING:
-        sides, top = (2 * p[2], 2 * p[3]), box.bottom + 2 * p[2]
+        one, other, top = 2 * p[2], 2 * p[3], base_m + 2 * p[2]
     elif kind == SPHERE:
-        sides, top = (2 * p[3], 2 * p[3]), p[2] + p[3]
+        one, other, top = 2 * p[3], 2 * p[3], p[2] + p[3]
     else:
         radius = p[2] if kind == CYLINDER else max(p[2], p[3])
-        sides, top = (2 * radius, 2 * radius), p[4 if kind == CONE else 3]
-    seen, has = sorted(box.size_xyz[:2]), sorted(sides)
-    grown = all(
-        LEAST_GROWTH * s - DEEP_M < h < MOST_GROWTH * s + DEEP_M
-        for s, h in zip(seen, has, strict=True)
-    )
-    higher = abs(top - box.top) < 0.2 * box.size_xyz[2] + DEEP_M
-    off = math.hypot(p[0] - box.center_xyz[0], p[1] - box.center_xyz[1])
-    return bool(grown and higher and off < 0.75 * seen[1])
+        one, other, top = 2 * radius, 2 * radius, p[4 if kind == CONE else 3]
+    narrow, wide = min(box[3], box[4]), max(box[3], box[4])
+    grown = _grown(narrow, min(one, other)) and _grown(wide, max(one, other))
+    higher = abs(top - box_top) < 0.2 * box[5] + DEEP_M
+    return grown and higher and math.hypot(p[0] - box[0], p[1] - box[1]) < 0.75 * wide
+
+
+@kernel
+def _grown(seen_m: float, has_m: float) -> bool:
+    return LEAST_GROWTH * seen_m - DEEP_M < has_m < MOST_GROWTH * seen_m + DEEP_M
 
 
 def _primitive(kind: int, p: NDArray[np.float64], base_m: float, residual_m: float) -> Primitive:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -67,11 +68,32 @@ def rejoined(bodies: Sequence[Body], scene: Scene) -> list[Body]:
 
 
 def _both(a: Body, b: Body) -> Body:
+    """Two bodies as one, by rows and columns as each of them is."""
+    order = _merged(a.u, a.v, b.u, b.v)
     u, v = np.concatenate([a.u, b.u]), np.concatenate([a.v, b.v])
-    order = np.lexsort((u, v))
     depth = np.concatenate([a.depth_m, b.depth_m])
     points = np.concatenate([a.points, b.points])
-    return replace(a, u=u[order], v=v[order], depth_m=depth[order], points=points[order])
+    return replace(a, u=u, v=v, depth_m=depth, points=points).part(order)
+
+
+@kernel
+def _merged(
+    u: NDArray[np.int32],
+    v: NDArray[np.int32],
+    other_u: NDArray[np.int32],
+    other_v: NDArray[np.int32],
+) -> NDArray[np.int64]:
+    """Order by rows, then columns, of pixels and the other pixels behind them."""
+    n, m = len(u), len(other_u)
+    out, i, j = np.empty(n + m, np.int64), 0, 0
+    for k in range(n + m):
+        if j == m or (i < n and (v[i] < other_v[j] or (v[i] == other_v[j] and u[i] < other_u[j]))):
+            out[k] = i
+            i += 1
+        else:
+            out[k] = n + j
+            j += 1
+    return out
 
 
 def _level_m(a: Body, b: Body) -> float:
@@ -94,11 +116,20 @@ def _top_m(body: Body) -> float:
     return percentile(body.points[:: max(1, len(body.points) // SAMPLES), 2], 98.0)
 
 
+@kernel
+def _reach(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Lowest and highest x and y of points (N, 3): (2, 2), m."""
+    out = np.array([[math.inf, math.inf], [-math.inf, -math.inf]])
+    for k in range(len(points)):
+        for c in range(2):
+            out[0, c], out[1, c] = min(out[0, c], points[k, c]), max(out[1, c], points[k, c])
+    return out
+
+
 def _touch(a: Body, b: Body) -> bool:
     """Whether, seen from above, the rectangles around both come near each other."""
-    low = np.maximum(a.points[:, :2].min(axis=0), b.points[:, :2].min(axis=0))
-    high = np.minimum(a.points[:, :2].max(axis=0), b.points[:, :2].max(axis=0))
-    return bool((low - high < NEAR_M).all())
+    one, other = _reach(a.points), _reach(b.points)
+    return bool((np.maximum(one[0], other[0]) - np.minimum(one[1], other[1]) < NEAR_M).all())
 
 
 def _hollow(body: Body, scene: Scene, taken: NDArray[np.bool_]) -> Body | None:
