@@ -72,7 +72,7 @@ def _outside_octagon(xy: NDArray[np.floating | np.integer]) -> NDArray[np.float3
     x0 = s0 = y0 = d0 = math.inf
     x1 = s1 = y1 = d1 = -math.inf
     for i in range(n):
-        x, y = np.float32(xy[i, 0]), np.float32(xy[i, 1])
+        x, y = float(np.float32(xy[i, 0])), float(np.float32(xy[i, 1]))
         s, d = x + y, y - x
         if x > x1:
             x1, corner[0] = x, i
@@ -99,7 +99,7 @@ def _outside_octagon(xy: NDArray[np.floating | np.integer]) -> NDArray[np.float3
         edges[k, 2] = edges[k, 0] * ax + edges[k, 1] * ay
     out, kept = np.empty((n, 2), np.float32), 0
     for i in range(n):
-        x, y = np.float32(xy[i, 0]), np.float32(xy[i, 1])
+        x, y = float(np.float32(xy[i, 0])), float(np.float32(xy[i, 1]))
         within = True
         for k in range(8):
             if edges[k, 0] == 0 and edges[k, 1] == 0:

@@ -11,6 +11,7 @@ from afkb.flow import Detection, View
 from afkb_mapping.bodies import Body
 from afkb_things.clusters import clusters_from_above
 from afkb_things.describe import body_detection
+from afkb_things.furniture import is_part
 from afkb_things.hidden import Loose, things_on_hidden_supports, things_on_the_floor
 from afkb_things.rejoin import rejoined
 from afkb_things.scene import Scene
@@ -18,6 +19,10 @@ from afkb_things.settings import ThingSettings
 from afkb_things.split import split
 from afkb_things.surroundings import mark, surroundings
 from afkb_things.wholeness import ATTACHED
+
+UNSURE = 2
+"""Where no support is in sight, parts of furniture abound: so many times more pixels make a body
+of a part."""
 
 
 class ThingDetector:
@@ -42,13 +47,18 @@ class ThingDetector:
             return []
         standing = rejoined(list(self._on_supports(scene)), scene)
         loose = Loose.of(scene)
-        hidden = list(things_on_hidden_supports(scene, loose, s.min_pixels))
-        on_floor = list(things_on_the_floor(scene, loose, s.min_pixels))
+        apart = (things_on_hidden_supports, things_on_the_floor)
+        off = [
+            body
+            for found in apart
+            for body in split(list(found(scene, loose, s.min_pixels)), scene, UNSURE * s.min_pixels)
+        ]
         names = np.zeros(scene.depth_m.shape, np.int32)
         return [
             body_detection(body, attached, self.name)
-            for group in (standing, *([b] for b in hidden + on_floor))
+            for group in (standing, *([b] for b in off))
             for body, attached in self._free(group, scene, names)
+            if not is_part(body, scene.supports)
         ]
 
     def _free(
@@ -82,4 +92,4 @@ class ThingDetector:
         groups: list[Body] = []
         for support, u, v in scene.on_each_support(self.settings.min_pixels):
             groups += clusters_from_above(u, v, scene, support, self.settings)
-        yield from split(groups, scene, scene.labels, self.settings.min_pixels)
+        yield from split(groups, scene, self.settings.min_pixels)

@@ -28,6 +28,9 @@ LEVEL_M = 0.015
 RIM_SHARE, INSIDE_SHARE = 0.6, 0.4
 """Of a hollow that parts make together: how far around the rim is seen, and how much of what is
 seen through the rim's plane lies below it; a notch between closed bodies is mostly their tops."""
+SIGHT_SHARE = 0.6
+"""Or how far below the rim is seen, as a share of what sight lines that pass it could show: from
+low above it little of a hollow is seen, but all that could be. In a notch they end early."""
 LEAST_BEHIND = 5
 """Pixel pairs in which a part must lie behind what covers its middle."""
 OUTLINE_M, OUTLINE_SHARE = 0.010, 0.85
@@ -135,10 +138,15 @@ def _touch(a: Body, b: Body) -> bool:
 def _hollow(body: Body, scene: Scene, taken: NDArray[np.bool_]) -> Body | None:
     """A body with its inside, or None where it has no opening that all of it is around."""
     full = _with_inside(body, scene, taken)
-    opening = find_opening(full, scene.camera_xyz)
-    if opening is None or opening.rim_share < RIM_SHARE or opening.inside_share < INSIDE_SHARE:
-        return None
-    return full
+    return full if is_hollow(full, scene) else None
+
+
+def is_hollow(body: Body, scene: Scene) -> bool:
+    """Whether all of a body is around one opening."""
+    opening = find_opening(body, scene.camera_xyz)
+    if opening is None or opening.rim_share < RIM_SHARE:
+        return False
+    return opening.inside_share >= INSIDE_SHARE or opening.sight_share >= SIGHT_SHARE
 
 
 def _filled(body: Body, scene: Scene, taken: NDArray[np.bool_]) -> Body | None:

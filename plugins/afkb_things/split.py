@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 
 from afkb_mapping.bodies import Body
 from afkb_mapping.image_regions import order_by_label
-from afkb_mapping.openings import find_opening
 from afkb_things.cells import cell_box, cell_size, cells_of, of_pixels
 from afkb_things.parts import BEHIND, TOUCH, Parts, measures_of
 from afkb_things.patches import contacts, patches_of
-from afkb_things.rejoin import INSIDE_SHARE, RIM_SHARE
+from afkb_things.rejoin import is_hollow
 from afkb_things.scene import Scene
 from afkb_things.surroundings import mark
 from afkb_things.valleys import valleys
@@ -22,10 +21,8 @@ MOST_PATCHES = 60
 """More patches in one pool are noise that no edge can be told from."""
 
 
-def split(
-    bodies: Sequence[Body], scene: Scene, kinds: NDArray[np.int16], min_pixels: int
-) -> Iterator[Body]:
-    """The bodies that make up groups of what stands together; `kinds` (H, W) are parted, too."""
+def split(bodies: Sequence[Body], scene: Scene, min_pixels: int) -> Iterator[Body]:
+    """The bodies that make up groups of what stands together, none of whose pixels they share."""
     pools = np.zeros(scene.depth_m.shape, np.int32)
     for name, body in enumerate(bodies, start=1):
         mark(body.u, body.v, pools, name)
@@ -33,7 +30,7 @@ def split(
         if len(body.u) < 2 * min_pixels:
             yield body
         else:
-            yield from _split(body, scene, pools, name, kinds, min_pixels)
+            yield from _split(body, scene, pools, name, min_pixels)
 
 
 def _split(
@@ -41,14 +38,13 @@ def _split(
     scene: Scene,
     pools: NDArray[np.int32],
     name: int,
-    kinds: NDArray[np.int16],
     min_pixels: int,
 ) -> Iterator[Body]:
     """The bodies that make up one group, whose pixels are marked with its name in `pools`."""
     focal, noise = float(scene.intrinsics[0]), scene.noise
     size = cell_size(focal, body.range_m)
     box = cell_box(body.image_box, scene.depth_m.shape, size)
-    depth, kind = cells_of(scene.depth_m, pools, name, kinds, size, box, noise)
+    depth, kind = cells_of(scene.depth_m, pools, name, scene.labels, size, box, noise)
     valley = valleys(depth, focal / size, noise)
     patches, count = patches_of(depth, kind, valley, noise)
     if not 1 < count <= MOST_PATCHES:
@@ -65,7 +61,7 @@ def _bodies(body: Body, own: NDArray[np.int32], parts: Parts, scene: Scene) -> I
     parts.join_smooth()
     parts.join_small()
     parts.join_floating()
-    if len(parts.kept) > 1 and _is_hollow(body, scene):
+    if len(parts.kept) > 1 and is_hollow(body, scene):
         yield body
         return
     while len(parts.kept) > 1:
@@ -92,13 +88,6 @@ def _hollow_pair(
             if a >= b or met[a, b] + met[b, a] == 0:
                 continue
             both = body.part(np.flatnonzero((of == a) | (of == b)))
-            if _is_hollow(both, scene):
+            if is_hollow(both, scene):
                 return a, b
     return None
-
-
-def _is_hollow(body: Body, scene: Scene) -> bool:
-    opening = find_opening(body, scene.camera_xyz)
-    if opening is None:
-        return False
-    return opening.rim_share >= RIM_SHARE and opening.inside_share >= INSIDE_SHARE

@@ -125,3 +125,19 @@ def test_bodies_stay_apart_through_noise_and_loss() -> None:
 def test_where_nothing_stands_nothing_is_found(scene: list[Box], seed: int | None) -> None:
     view = view_of(scene)
     assert things(view if seed is None else hard(view, seed)) == []
+
+
+def test_a_bowl_seen_from_low_above_its_rim_is_one() -> None:
+    bowl = Cup((1.5, 0.0), 0.73, 0.06, 0.09)
+    (found,) = things(view_of([FLOOR, table(1.5, 0.0, 0.73), bowl], height=0.95, pitch_deg=12))
+    assert found.box.size_xyz[:2] == pytest.approx((0.18, 0.18), abs=0.04)
+
+
+def test_the_sides_of_a_shelf_and_the_legs_of_a_table_are_no_things() -> None:
+    board = Box((1.0, -0.4, 0.68), (1.3, 0.4, 0.70))
+    sides = [Box((1.0, y, 0.70), (1.3, y + 0.02, 1.0)) for y in (-0.4, 0.38)]
+    legs = [Box((x, y, 0.0), (x + 0.04, y + 0.04, 0.68)) for x in (1.0, 1.26) for y in (-0.4, 0.36)]
+    carton = Box((1.1, 0.0, 0.70), (1.16, 0.1, 0.85))
+    found = things(view_of([FLOOR, board, *sides, *legs, carton]), at_least=0.1)
+    (only,) = found
+    assert only.position_xyz[:2] == pytest.approx([1.13, 0.05], abs=0.03)
