@@ -15,6 +15,7 @@ from afkb_mapping.straight_runs import runs_m, thickness_m
 from afkb_mapping.upright_cells import UprightCells
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 UNKNOWN_HEIGHT = 0.6
 """P(wall | straight jamb whose height no view has shown)."""
@@ -68,14 +69,13 @@ class DoorwayJudge:
             p *= self._is_jamb(jamb[None], share, low_jamb)
         p *= 1 - ramp(self._stands_between(jambs_xy), *OBSTRUCTED)
         if p >= FAINT and not any(map(math.isnan, tall)):
-            p *= ramp(max(runs_m(self._tall, jambs_xy, self._grid)), *WALL_BESIDE_M)
+            p *= beside_wall(jambs_xy, self._tall, self._grid)
         return p * room_to_room(jambs_xy, self.free, self._grid) if p >= FAINT else 0.0
 
     def doorway_of_map(self, jambs_xy: Array, gap: float) -> float:
         """The same of a gap that no single view has shown."""
         p = self.doorway(jambs_xy, gap, LOW_JAMB_IN_MAP)
-        thinner = min(thickness_m(self._tall, jambs_xy, self._grid))
-        return p * (1 - ramp(thinner, *WALL_THICK_M))
+        return p * through_wall(jambs_xy, self._tall, self._grid)
 
     def _is_jamb(self, jamb_xy: Array, tall: float, low_jamb: float) -> float:
         """Probability that what stands at a point (1, 2), m, ends or hides the end of a wall."""
@@ -92,6 +92,16 @@ class DoorwayJudge:
         if not len(inner):
             return 0.0
         return self._upright.stands_on(jambs_xy[0] + np.outer(inner / width, along))
+
+
+def beside_wall(jambs_xy: Array, tall: Mask, grid: OccupancyGrid) -> float:
+    """How well one of two jambs (2, 2), m, is of a wall, 0 to 1; `tall`: (rows, cols)."""
+    return ramp(max(runs_m(tall, jambs_xy, grid)), *WALL_BESIDE_M)
+
+
+def through_wall(jambs_xy: Array, tall: Mask, grid: OccupancyGrid) -> float:
+    """How well a gap between jambs (2, 2), m, leads through a wall and along no aisle, 0 to 1."""
+    return 1 - ramp(min(thickness_m(tall, jambs_xy, grid)), *WALL_THICK_M)
 
 
 def ramp(value: float, low: float, high: float, least: float = 0.0) -> float:
