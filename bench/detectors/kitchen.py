@@ -52,7 +52,7 @@ class Label:
     def distance(self, claim: Detection) -> float:
         """From its nearest place to the claim's centre, m; inf where no place lies in the claim."""
         places = self.places_xyz
-        if claim.affords("SupportAbility", 1e-6) and "area" in claim.measures:
+        if "area" in claim.measures:  # of a surface, whatever is told of it
             within = np.array([_on_footprint(p, claim) for p in places], bool)
         else:
             within = np.array([_in_box(p, claim) for p in places], bool)
