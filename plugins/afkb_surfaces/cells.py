@@ -32,6 +32,8 @@ FLAT = 1.6
 """A plane fits where the pixels stray from it by at most this many times the noise."""
 LEAST_CELL = 0.5
 """Share of the pixels of a cell that must have depth for a plane to be fitted to it alone."""
+LEAST_OWN = 2
+"""A cell of fewer pixels with depth isn't told by the window around it."""
 MIDDLE, TINY = np.float32(0.5 * (CELL - 1)), np.float32(1e-12)
 
 
@@ -123,7 +125,7 @@ def _keep_flat(
     least = np.float32(LEAST_WINDOW * 9 * CELL * CELL)
     least_own = np.float32(LEAST_CELL * CELL * CELL)
     for c in range(cols):
-        if flat[c] and seen[c + 1] >= CELL and fit[WEIGHT, c] >= least:
+        if flat[c] and seen[c + 1] >= LEAST_OWN and fit[WEIGHT, c] >= least:
             continue
         if flat_own[c + 1] and seen[c + 1] >= least_own:
             for k in range(N_FIT):

@@ -24,8 +24,13 @@ def footprint_of(
     intrinsics: NDArray[np.float64],
     T_map_camera: NDArray[np.float64],
     step_m: float,
+    depth_m: NDArray[np.float32],
+    of_cells: NDArray[np.int32],
 ) -> NDArray[np.float64]:
     """Centres (M, 2) of the squares whose middle lies on a pixel of the label, sorted, m.
+
+    A pixel of `labels` (H, W) without depth, in `depth_m`, is of what the plane of its cell is of:
+    `of_cells` (rows, cols).
 
     Rows of a distant, grazing surface fall several squares apart; going from the squares to the
     image, not the other way, leaves no gaps. `span`: x0, x1, y0, y1 where to look, m. `plane`:
@@ -39,6 +44,7 @@ def footprint_of(
     T = T_map_camera
     fx, fy, cx, cy = intrinsics
     rows, cols = labels.shape
+    size = max(cols // of_cells.shape[1], 1)
     y0 = (j0 + 0.5) * step_m
     # along a row of squares, all three camera coordinates grow by the same step
     step = np.empty(3)
@@ -58,7 +64,14 @@ def footprint_of(
             u = (at[0] + j * step[0]) * near * fx + cx + 0.5
             v = (at[1] + j * step[1]) * near * fy + cy + 0.5
             if 0 <= u < cols and 0 <= v < rows:
-                hit[i + 1, j + 1] = labels[int(v), int(u)] == label
+                hit[i + 1, j + 1] = labels[int(v), int(u)] == label or (
+                    not depth_m[int(v), int(u)] > 0
+                    and of_cells[
+                        min(int(v) // size, of_cells.shape[0] - 1),
+                        min(int(u) // size, of_cells.shape[1] - 1),
+                    ]
+                    == label
+                )
     return _centres(hit, i0, j0, step_m)
 
 

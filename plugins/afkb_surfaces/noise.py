@@ -10,9 +10,9 @@ from afkb_mapping.sensor_noise import FLOOR_M, GROWTH_PER_M, NEAREST_M, depth_si
 from afkb_surfaces.moments import CELL, N_SCRATCH, ONE, moments_of_row
 from afkb_surfaces.windows import MEAN_W, N_FIT, VARIANCE, WEIGHT, fit_windows
 
-LEAST_WINDOW = 0.3
-"""Share of the pixels of a window that must have depth for a plane to be fitted; half of them may
-be missing anywhere."""
+LEAST_WINDOW = 0.15
+"""Share of the pixels of a window that must have depth for a plane to be fitted; three quarters of
+them may be missing anywhere."""
 MOST_NOISE = 4.0
 """A sensor, or a scene of leaves and tangles, may seem this much noisier than a Kinect."""
 QUIET_SHARE = 0.35

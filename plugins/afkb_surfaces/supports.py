@@ -186,7 +186,15 @@ class Supports:
         around = MARGIN_M + 2 * self.cells.size_px / self.focal_px * m[MEDIAN]
         span = (m[X0] - around, m[X1] + around, m[Y0] - around, m[Y1] + around)
         return footprint_of(
-            image.labels, label, span, plane, image.intrinsics, self.T_map_camera, step
+            image.labels,
+            label,
+            span,
+            plane,
+            image.intrinsics,
+            self.T_map_camera,
+            step,
+            image.depth_m,
+            self.coarse.labels,
         )
 
     def _floor(self, m: list[float]) -> Iterator[Detection]:

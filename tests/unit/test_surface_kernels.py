@@ -51,9 +51,22 @@ def test_a_footprint_is_filled_where_the_image_shows_the_surface() -> None:
     labels = np.zeros((100, 100), np.int32)
     labels[40:60, 30:70] = 3
     span, level = (-0.3, 0.3, -0.2, 0.2), np.array([0.0, 0.0, 1.0])
-    filled = footprint_of(labels, 3, span, level, INTRINSICS, DOWN, 0.02)
+    depth, cells = np.ones((100, 100), np.float32), np.zeros((25, 25), np.int32)
+    shown = (level, INTRINSICS, DOWN, 0.02, depth, cells)
+    filled = footprint_of(labels, 3, span, *shown)
     assert len(filled) * 0.02**2 == pytest.approx(0.4 * 0.2, rel=0.12)
-    assert len(footprint_of(labels, 9, span, level, INTRINSICS, DOWN, 0.02)) == 0
+    assert len(footprint_of(labels, 9, span, *shown)) == 0
+
+
+def test_lost_pixels_of_a_cell_are_of_its_surface_and_no_gaps_in_a_footprint() -> None:
+    cells = np.zeros((25, 25), np.int32)
+    cells[10:15, 8:17] = 3
+    lost = RNG.random((100, 100)) < 0.5
+    depth = np.where(lost, 0, 1).astype(np.float32)
+    labels = np.where(lost, 0, cells.repeat(4, axis=0).repeat(4, axis=1))
+    span, level = (-0.3, 0.3, -0.2, 0.2), np.array([0.0, 0.0, 1.0])
+    filled = footprint_of(labels, 3, span, level, INTRINSICS, DOWN, 0.02, depth, cells)
+    assert len(filled) * 0.02**2 == pytest.approx(0.36 * 0.2, rel=0.12)
 
 
 def test_an_outline_keeps_what_is_seen_through_and_bridges_what_stands_on_it() -> None:

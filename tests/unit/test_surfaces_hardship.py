@@ -22,15 +22,16 @@ def supports(view: View) -> list[Detection]:
     return [d for d in found if d.affords("SupportAbility") and not d.measures.get("is_floor")]
 
 
-def without_half(view: View) -> View:
+def without(share: float, view: View) -> View:
     assert view.depth_m is not None
-    lost = np.random.default_rng(8).random(view.depth_m.shape) < 0.5
+    lost = np.random.default_rng(8).random(view.depth_m.shape) < share
     return replace(view, depth_m=np.where(lost, np.float32(0), view.depth_m))
 
 
 HARDSHIPS = {
     "noise": lambda rng: view_of(SCENE, rng=rng, noise=3.0),
-    "half": lambda rng: without_half(view_of(SCENE, rng=rng)),
+    "half": lambda rng: without(0.5, view_of(SCENE, rng=rng)),
+    "three quarters": lambda rng: without(0.75, view_of(SCENE, rng=rng)),
     "320x240": lambda rng: view_of(SCENE, rng=rng, camera=SMALL),
     "1280x720": lambda rng: view_of(SCENE, rng=rng, camera=WIDE),
     "rolled": lambda rng: view_of(SCENE, rng=rng, roll_deg=30.0),
