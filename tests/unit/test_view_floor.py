@@ -8,7 +8,7 @@ import pytest
 import depth_samples as depth
 import laser_samples as laser
 from afkb_mapping.geometry import T_from_xy_yaw
-from afkb_mapping.panorama import panorama_of
+from afkb_mapping.panorama import bearing, panorama_of
 from afkb_mapping.view_floor import area_m2, free_floor
 
 WALL = depth.Box((3.0, -6.0, 0.0), (3.2, 6.0, 3.0))
@@ -50,3 +50,10 @@ def test_low_and_tall_are_told_apart():
 
 def test_without_depth_and_scan_there_is_none():
     assert panorama_of(scan_view()) is None
+
+
+def test_bearings_are_those_of_atan2():
+    for angle in [*np.linspace(-3.14, 3.14, 100), 0.0, np.pi / 4, np.pi / 2, np.pi]:
+        y, x = 2 * np.sin(angle), 2 * np.cos(angle)
+        assert bearing(y, x) == pytest.approx(np.arctan2(y, x), abs=2e-5)
+    assert bearing(0.0, 0.0) == 0.0
