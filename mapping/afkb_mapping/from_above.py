@@ -55,6 +55,16 @@ def squares_of(
     return (i0, j0), (i1 - i0 + 1, j1 - j0 + 1), ij
 
 
+@kernel
+def reach_xy(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Lowest and highest x and y of points (N, 2+): (2, 2)."""
+    out = np.array([[math.inf, math.inf], [-math.inf, -math.inf]])
+    for k in range(len(xy)):
+        for c in range(2):
+            out[0, c], out[1, c] = min(out[0, c], xy[k, c]), max(out[1, c], xy[k, c])
+    return out
+
+
 def hull_candidates(xy: NDArray[np.floating | np.integer]) -> NDArray[np.float32]:
     """Those of the points (N, 2+) that may be corners of their convex hull: (M, 2), M <= N.
 

@@ -135,16 +135,16 @@ def label_things(
 
     Returns labels (H, W), 0 where there is none, -1 on a support or the floor itself, ON_WALL on
     an upright plane; heights over the support that carries all below (see `roots_of`), (H, W)
-    float32, m, 0 where nothing stands; and of what stands, in the order of the image, columns, rows
-    and that support, from 0, all (N,).
+    float32, m, undefined where nothing stands; and of what stands, in the order of the image,
+    columns, rows and that support, from 0, all (N,).
 
     `slope` (3,): what one metre of depth changes in height is slope . (u, v, 1).
     """
     rows, cols = depth_m.shape
     ox, oy = np.float32(origin_xy[0]), np.float32(origin_xy[1])
     row, squares = np.empty((3, cols), np.float32), np.empty(cols, np.int32)
-    labels = np.zeros((rows, cols), np.int16)
-    overs = np.zeros((rows, cols), np.float32)
+    labels = np.empty((rows, cols), np.int16)
+    overs = np.empty((rows, cols), np.float32)
     us, vs, ks = np.empty((3, rows * cols), np.int32)
     over_squares, n = raster.ravel(), 0
     for v in range(rows):

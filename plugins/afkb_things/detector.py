@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Sequence
 
 from afkb.flow import Detection, View
 from afkb_mapping.bodies import Body
@@ -17,7 +14,7 @@ from afkb_things.rejoin import rejoined
 from afkb_things.scene import Scene
 from afkb_things.settings import ThingSettings
 from afkb_things.split import split
-from afkb_things.surroundings import mark, surroundings
+from afkb_things.surroundings import mark, named, surroundings
 from afkb_things.wholeness import ATTACHED
 
 UNSURE = 2
@@ -45,51 +42,48 @@ class ThingDetector:
         scene = Scene.of(view, earlier, s)
         if scene is None:
             return []
-        standing = rejoined(list(self._on_supports(scene)), scene)
+        standing = rejoined(self._on_supports(scene), scene)
         loose = Loose.of(scene)
-        apart = (things_on_hidden_supports, things_on_the_floor)
-        off = [
-            body
-            for found in apart
-            for body in split(list(found(scene, loose, s.min_pixels)), scene, UNSURE * s.min_pixels)
-        ]
-        names = np.zeros(scene.depth_m.shape, np.int32)
+        found = [self._free(standing, scene)]
+        for apart in (things_on_hidden_supports, things_on_the_floor):
+            whole = [
+                body
+                for one in apart(scene, loose, s.min_pixels)
+                for body, _ in self._free([one], scene)
+            ]
+            found += [
+                self._free([part], scene) for part in split(whole, scene, UNSURE * s.min_pixels)
+            ]
         return [
             body_detection(body, attached, self.name)
-            for group in (standing, *([b] for b in off))
-            for body, attached in self._free(group, scene, names)
+            for free in found
+            for body, attached in free
             if not is_part(body, scene.supports)
         ]
 
-    def _free(
-        self, bodies: Sequence[Body], scene: Scene, names: NDArray[np.int32]
-    ) -> Iterator[tuple[Body, float]]:
+    def _free(self, bodies: Sequence[Body], scene: Scene) -> list[tuple[Body, float]]:
         """The bodies that aren't part of something larger, and how far each one's surface goes on.
 
-        Where it goes on into a neighbour that is such a part, it goes on, too. `names` (H, W) is
-        scratch: 0 before and after.
+        Where it goes on into a neighbour that is such a part, it goes on, too.
         """
-        for name, body in enumerate(bodies, start=1):
-            mark(body.u, body.v, names, name)
         kept = dict(enumerate(bodies, start=1))
         labels = (scene.labels, scene.overs_m, self.settings.core_m, scene.noise)
-        for _ in range(2):
-            attached = {
-                k: surroundings(b.u, b.v, scene.depth_m, names, k, *labels)[0]
-                for k, b in kept.items()
-            }
-            parts = [k for k in kept if attached[k] >= ATTACHED[1]]
-            for k in parts:
-                mark(kept[k].u, kept[k].v, names, 0)
-                del kept[k]
-            if not parts:
-                break
-        for k, body in kept.items():
-            mark(body.u, body.v, names, 0)
-            yield body, attached[k]
+        with named(bodies, scene.names) as names:
+            for _ in range(2):
+                attached = {
+                    k: surroundings(b.u, b.v, scene.depth_m, names, k, *labels)[0]
+                    for k, b in kept.items()
+                }
+                parts = [k for k in kept if attached[k] >= ATTACHED[1]]
+                for k in parts:
+                    mark(kept[k].u, kept[k].v, names, 0)
+                    del kept[k]
+                if not parts:
+                    break
+        return [(body, attached[k]) for k, body in kept.items()]
 
-    def _on_supports(self, scene: Scene) -> Iterator[Body]:
+    def _on_supports(self, scene: Scene) -> list[Body]:
         groups: list[Body] = []
         for support, u, v in scene.on_each_support(self.settings.min_pixels):
             groups += clusters_from_above(u, v, scene, support, self.settings)
-        yield from split(groups, scene, self.settings.min_pixels)
+        return split(groups, scene, self.settings.min_pixels)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -12,14 +11,14 @@ from numpy.typing import NDArray
 
 from afkb_mapping.bodies import Body
 from afkb_mapping.depth_points import points_of_row
-from afkb_mapping.from_above import hull_candidates
+from afkb_mapping.from_above import hull_candidates, reach_xy
 from afkb_mapping.kernels import kernel
 from afkb_mapping.opening_kernels import border_lines
 from afkb_mapping.openings import find_opening
 from afkb_mapping.order_statistics import percentile
 from afkb_things.cells import step
 from afkb_things.scene import Scene
-from afkb_things.surroundings import mark
+from afkb_things.surroundings import named
 
 NEAR_M = 0.03
 """Parts of one hollow lie this near to each other, seen from above."""
@@ -36,8 +35,8 @@ LEAST_BEHIND = 5
 OUTLINE_M, OUTLINE_SHARE = 0.010, 0.85
 """So near to the outline of both parts, seen from above, must such a share of their sides lie."""
 BELOW_TOP_M = 0.02
-SAMPLES = 2000
-"""About so many points say how high a top is."""
+SAMPLES, HOLLOW_SAMPLES, HULL_SAMPLES = 2000, 4000, 4000
+"""About so many points say how high a top is, whether it is hollow, and what its outline is."""
 SEEN_THROUGH = 20
 """Pixels of the support between two parts that show that nothing joins them."""
 
@@ -46,11 +45,9 @@ Hull = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 def rejoined(bodies: Sequence[Body], scene: Scene) -> list[Body]:
     """The bodies, those joined that are one hollow, or one thing behind another, and filled."""
-    names = np.zeros(scene.depth_m.shape, np.int32)
-    for name, body in enumerate(bodies, start=1):
-        mark(body.u, body.v, names, name)
-    behind = _behind(scene.depth_m, names, len(bodies), around(bodies), scene.noise)
-    taken = names > 0
+    with named(bodies, scene.names) as names:
+        behind = _behind(scene.depth_m, names, len(bodies), around(bodies), scene.noise)
+        taken = names > 0
     kept = [_filled(body, scene, taken) for body in bodies]
     tops = [_top_m(body) for body in bodies]
     for a in range(len(kept)):
@@ -119,19 +116,9 @@ def _top_m(body: Body) -> float:
     return percentile(body.points[:: max(1, len(body.points) // SAMPLES), 2], 98.0)
 
 
-@kernel
-def _reach(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Lowest and highest x and y of points (N, 3): (2, 2), m."""
-    out = np.array([[math.inf, math.inf], [-math.inf, -math.inf]])
-    for k in range(len(points)):
-        for c in range(2):
-            out[0, c], out[1, c] = min(out[0, c], points[k, c]), max(out[1, c], points[k, c])
-    return out
-
-
 def _touch(a: Body, b: Body) -> bool:
     """Whether, seen from above, the rectangles around both come near each other."""
-    one, other = _reach(a.points), _reach(b.points)
+    one, other = reach_xy(a.points), reach_xy(b.points)
     return bool((np.maximum(one[0], other[0]) - np.minimum(one[1], other[1]) < NEAR_M).all())
 
 
@@ -143,7 +130,9 @@ def _hollow(body: Body, scene: Scene, taken: NDArray[np.bool_]) -> Body | None:
 
 def is_hollow(body: Body, scene: Scene) -> bool:
     """Whether all of a body is around one opening."""
-    opening = find_opening(body, scene.camera_xyz)
+    thin = max(1, len(body.u) // HOLLOW_SAMPLES)
+    seen = body if thin == 1 else body.part(np.arange(0, len(body.u), thin))
+    opening = find_opening(seen, scene.camera_xyz)
     if opening is None or opening.rim_share < RIM_SHARE:
         return False
     return opening.inside_share >= INSIDE_SHARE or opening.sight_share >= SIGHT_SHARE
@@ -192,7 +181,9 @@ def _with_inside(body: Body, scene: Scene, taken: NDArray[np.bool_]) -> Body:
 
 def _hull(body: Body) -> Hull:
     """Border lines of a body's outline, seen from above."""
-    corners = cv2.convexHull(hull_candidates(body.points)).reshape(-1, 2)
+    corners = cv2.convexHull(
+        hull_candidates(body.points[:: max(1, len(body.points) // HULL_SAMPLES)])
+    ).reshape(-1, 2)
     return border_lines(corners.astype(np.float64))
 
 

@@ -30,6 +30,7 @@ class Scene:
     - `labels`, `overs_m` (H, W), and `standing` (columns, rows, supports): see `label_things`.
     - `intrinsics`: fx, fy, cx, cy. `planes`: (K, 3), see `fit_supports`.
     - `noise`: how many times noisier than the sensor's model the view is.
+    - `names`: (H, W), scratch to number bodies in; 0 whenever nobody does.
     """
 
     depth_m: NDArray[np.float32]
@@ -41,6 +42,7 @@ class Scene:
     overs_m: NDArray[np.float32]
     standing: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]
     noise: float
+    names: NDArray[np.int32]
 
     @property
     def camera_xyz(self) -> NDArray[np.float64]:
@@ -88,4 +90,5 @@ class Scene:
             *settings.above_m, noise,
         )  # fmt: skip
         u, v, on = standing
-        return cls(view.depth_m, intrinsics, T, s, planes, labels, overs, (u, v, on), noise)
+        names = np.zeros(labels.shape, np.int32)
+        return cls(view.depth_m, intrinsics, T, s, planes, labels, overs, (u, v, on), noise, names)

@@ -14,23 +14,23 @@ from afkb_things.parts import BEHIND, TOUCH, Parts, measures_of
 from afkb_things.patches import contacts, patches_of
 from afkb_things.rejoin import is_hollow
 from afkb_things.scene import Scene
-from afkb_things.surroundings import mark
+from afkb_things.surroundings import named
 from afkb_things.valleys import valleys
 
 MOST_PATCHES = 60
 """More patches in one pool are noise that no edge can be told from."""
 
 
-def split(bodies: Sequence[Body], scene: Scene, min_pixels: int) -> Iterator[Body]:
+def split(bodies: Sequence[Body], scene: Scene, min_pixels: int) -> list[Body]:
     """The bodies that make up groups of what stands together, none of whose pixels they share."""
-    pools = np.zeros(scene.depth_m.shape, np.int32)
-    for name, body in enumerate(bodies, start=1):
-        mark(body.u, body.v, pools, name)
-    for name, body in enumerate(bodies, start=1):
-        if len(body.u) < 2 * min_pixels:
-            yield body
-        else:
-            yield from _split(body, scene, pools, name, min_pixels)
+    parts: list[Body] = []
+    with named(bodies, scene.names) as pools:
+        for name, body in enumerate(bodies, start=1):
+            if len(body.u) < 2 * min_pixels:
+                parts.append(body)
+            else:
+                parts += _split(body, scene, pools, name, min_pixels)
+    return parts
 
 
 def _split(

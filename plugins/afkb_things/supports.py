@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import Detection
 from afkb_mapping.bodies import supports_among
-from afkb_mapping.from_above import hull_candidates
+from afkb_mapping.from_above import hull_candidates, reach_xy
 from afkb_mapping.kernels import kernel
 from afkb_mapping.sensor_noise import depth_sigma
 
@@ -61,19 +61,20 @@ def _raster(
     chosen: Sequence[Detection], walls_xy: Sequence[NDArray[np.float64]]
 ) -> tuple[NDArray[np.uint64], NDArray[np.float64]]:
     """Supports' hulls as bits of a grid that reaches as far as they and the walls do."""
-    reach = [*(d.footprint_xy for d in chosen), *walls_xy]
-    if not reach:
+    hulls = [reach_xy(d.footprint_xy) for d in chosen]
+    reach = np.array([*hulls, *(reach_xy(segment) for segment in walls_xy)]).reshape(-1, 2, 2)
+    if not len(reach):
         return np.zeros((1, 1), np.uint64), np.zeros(2)
     pad = (HULL_MARGIN_CELLS + 2) * RASTER_M
-    origin = np.min([xy.min(axis=0) for xy in reach], axis=0) - pad
-    far = np.max([xy.max(axis=0) for xy in reach], axis=0) + pad
+    origin, far = reach[:, 0].min(axis=0) - pad, reach[:, 1].max(axis=0) + pad
     shape = np.ceil((far - origin) / RASTER_M).astype(int) + 1
     raster = np.zeros((int(shape[0]), int(shape[1])), np.uint64)
     margin = np.ones((2 * HULL_MARGIN_CELLS + 1,) * 2, np.uint8)
     for k, d in enumerate(chosen):
         ij = np.floor((d.footprint_xy - origin) / RASTER_M).astype(np.int32)
-        low = ij.min(axis=0) - HULL_MARGIN_CELLS
-        size = ij.max(axis=0) - low + 1 + HULL_MARGIN_CELLS
+        first, last = np.floor((hulls[k] - origin) / RASTER_M).astype(np.int32)
+        low = first - HULL_MARGIN_CELLS
+        size = last - low + 1 + HULL_MARGIN_CELLS
         mask = np.zeros((int(size[0]), int(size[1])), np.uint8)
         hull = cv2.convexHull(hull_candidates((ij - low)[:, ::-1]).astype(np.int32))
         cv2.fillConvexPoly(mask, hull, 1)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb_mapping.bodies import Body
 from afkb_mapping.kernels import kernel
 from afkb_things.cells import step
 
@@ -70,6 +74,16 @@ def surroundings(
                 behind += 1
     total = max(total, 1)
     return attached / total, behind / total, before / total, missing / total
+
+
+@contextmanager
+def named(bodies: Sequence[Body], names: NDArray[np.int32]) -> Iterator[NDArray[np.int32]]:
+    """`names` (H, W), 0 before and after, with each body's number, from 1, at its pixels."""
+    for name, body in enumerate(bodies, start=1):
+        mark(body.u, body.v, names, name)
+    yield names
+    for body in bodies:
+        mark(body.u, body.v, names, 0)
 
 
 @kernel
