@@ -1,13 +1,15 @@
 """Doorways from the map alone: narrow places, straight runs, and what depth views make together."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import depth_samples as depth
 from afkb.flow import OccupancyGrid, PinholeCamera
-from afkb_mapping.doorway_merger import DoorwayMerger
+from afkb.knowledge import Trapezoid
+from afkb_mapping.doorway_merger import DoorwayMerger, passage_width
 from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_mapping.grid_input import insert_view
 from afkb_mapping.narrows import gaps_of_map
@@ -133,3 +135,11 @@ def replace_top(box):
 def test_an_aisle_between_deep_cabinets_is_no_doorway():
     deep = [depth.Box((3.0, y, 0.0), (4.1, y + 4.55, 2.5)) for y in (-5.0, 0.45)]
     assert not from_depth(deep, PLACES, [])
+
+
+def test_widths_are_the_ontologys():
+    gate = SimpleNamespace(parameters={"width_m": Trapezoid(2.5, 2.8, 3.2, 3.5)})
+    width = passage_width(SimpleNamespace(features={"PassAbility": gate}))
+    assert not list(gaps_of_map(*rooms(), width))
+    assert len(list(gaps_of_map(*rooms((30, 88)), width))) == 1
+    assert passage_width(SimpleNamespace(features={})) == WIDTH
