@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, OrientedBox
-from afkb_containers.judge import LEAST_CLAIM, Verdict
-from afkb_containers.looks import Looks
+from afkb_containers.judge import Verdict
+from afkb_containers.looks import LEAST_CLAIM, Looks
 from afkb_containers.spread import UNKNOWN
 from afkb_mapping.bodies import Body
 from afkb_mapping.from_above import box_around, on_grid

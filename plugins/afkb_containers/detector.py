@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from afkb.flow import Detection, View
 from afkb_containers.describe import container_detection
-from afkb_containers.judge import LEAST_CLAIM, judge
-from afkb_containers.looks import look_at
+from afkb_containers.judge import judge
+from afkb_containers.looks import LEAST_CLAIM, look_at
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.sight import Sights, step_for
 from afkb_containers.sunk import sunk_containers

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from afkb_containers.looks import Looks
+from afkb_containers.looks import RIM_SHARE, Looks
 from afkb_containers.settings import ContainerSettings
 from afkb_containers.solid import convex, whole
 from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.openings import Top
 from afkb_mapping.trapezoids import membership, ramp
 
-LEAST_CLAIM = 0.2
-"""What holds something in fewer cases is not told of: it would tell nothing, and often wrongly."""
 CUT = 0.5
 """A body that the image edge cuts shows neither its top nor its thickness."""
 CLOSED_UNSEEN = 0.9
@@ -23,7 +21,6 @@ SHALLOW = (0.15, 0.35)
 """Share of what sight lines could show of a hollow, up to which it is the dent of a lid."""
 DENT = (0.05, 0.10)
 """Depth seen over the height of a thing: less is a dent in the top of something tall."""
-RIM_SHARE = (0.5, 0.8)
 INSIDE_SHARE = 0.15
 DEEP_SIGMAS = 2.5
 """What seems less deep than so many times the noise is the lowest that noise puts on a flat top."""

@@ -18,6 +18,10 @@ from afkb_mapping.openings import Opening, Top, look_at_top
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.trapezoids import membership, ramp
 
+LEAST_CLAIM = 0.2
+"""What holds something in fewer cases is not told of: it would tell nothing, and often wrongly."""
+RIM_SHARE = (0.5, 0.8)
+"""Share of the way around an opening at which there is rim: none below, fully sure above."""
 EDGE_SHARE = 1 / 525
 """Width of the mixed edge of a body, as a share of the focal length: a pixel of a Kinect's."""
 SOLID = {Stand.ON_SUPPORT: 0.92, Stand.HIDDEN: 0.80, Stand.ON_FLOOR: 0.0}
@@ -89,9 +93,10 @@ def look_at(
         detached = ramp(edges.free, DETACHED) * (1 - ramp(edges.hidden, BEHIND))
     if spread.lies and top is not None:
         fits *= ramp(top.area_m2 / max(math.prod(sides_m), 1e-6), FLAT)
-    if fits > 0:
+    if fits * detached >= LEAST_CLAIM:
         clear = _clear(above(body, body.base_m + height, sight))
-    if fits > 0 or (top is not None and top.opening is not None):
+    opens = top is not None and top.opening is not None and top.opening.rim_share >= RIM_SHARE[0]
+    if opens or fits * detached * clear >= LEAST_CLAIM:
         outline = silhouette_of(body, sight.depth_m, sight.focal_px, noise.sigma_m)
     return Looks(height, noise, spread, top, fits, outline, detached, clear)
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import Detection, OrientedBox, View
 from afkb_containers.describe import LITRES_PER_M3
-from afkb_containers.judge import LEAST_CLAIM
+from afkb_containers.looks import LEAST_CLAIM
 from afkb_containers.rims import CELL_M, Rim, rims_among
 from afkb_containers.ring import RIM_CELLS, ring_around
 from afkb_containers.settings import ContainerSettings
@@ -29,6 +29,8 @@ LEAST_DEPTH_M = 0.05
 EDGE_M = 0.012
 """What is this much lower than the rim belongs to the hole; its deepest part says how deep."""
 LEAST_AREA_M2 = 0.03
+LEAST_SHOWN = 0.5
+"""Share of the squares of a hole that show it at least; the others lie between its pixels."""
 LEAST_SUPPORT_M2 = 0.02
 ABOVE_FLOOR_M = 0.05
 UNDERCUT_CELLS = 2
@@ -109,6 +111,8 @@ def _in_rim(
     deepest, counts = _holes(
         view.depth_m, *camera, rim.height_m, *hull, origin, rim.image_box or _all_of(view)
     )
+    if np.count_nonzero(counts) * CELL_M**2 < LEAST_SHOWN * LEAST_AREA_M2:
+        return
     open_ = cv2.morphologyEx((deepest > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3)))
     parts, measures = components(open_, False)
     for k in range(1, len(measures)):
