@@ -9,7 +9,7 @@ from afkb_mapping.bodies import Body
 from afkb_things.clusters import clusters_from_above
 from afkb_things.describe import body_detection
 from afkb_things.furniture import is_part
-from afkb_things.hidden import Loose, things_on_hidden_supports, things_on_the_floor
+from afkb_things.hidden import loose_of, things_on_hidden_supports, things_on_the_floor
 from afkb_things.rejoin import rejoined
 from afkb_things.scene import Scene
 from afkb_things.settings import ThingSettings
@@ -43,7 +43,7 @@ class ThingDetector:
         if scene is None:
             return []
         standing = rejoined(self._on_supports(scene), scene)
-        loose = Loose.of(scene)
+        loose = loose_of(scene)
         found = [self._free(standing, scene)]
         for apart in (things_on_hidden_supports, things_on_the_floor):
             whole = [
