@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.bodies import Body
-from afkb_mapping.depth_points import points_of_row
 from afkb_mapping.from_above import hull_candidates, reach_xy
-from afkb_mapping.kernels import kernel
 from afkb_mapping.opening_kernels import border_lines
 from afkb_mapping.openings import find_opening
 from afkb_mapping.order_statistics import percentile
-from afkb_things.cells import step
+from afkb_things.rejoin_kernels import merged, pairs_behind, share_on, through
 from afkb_things.scene import Scene
 from afkb_things.surroundings import named
 
@@ -46,7 +44,7 @@ Hull = tuple[NDArray[np.float64], NDArray[np.float64]]
 def rejoined(bodies: Sequence[Body], scene: Scene) -> list[Body]:
     """The bodies, those joined that are one hollow, or one thing behind another, and filled."""
     with named(bodies, scene.names) as names:
-        behind = _behind(scene.depth_m, names, len(bodies), around(bodies), scene.noise)
+        pairs = pairs_behind(scene.depth_m, names, len(bodies), around(bodies), scene.noise)
         taken = names > 0
     kept = [_filled(body, scene, taken) for body in bodies]
     tops = [_top_m(body) for body in bodies]
@@ -58,42 +56,22 @@ def rejoined(bodies: Sequence[Body], scene: Scene) -> list[Body]:
             if _touch(first, second):
                 joined = _hollow(_both(first, second), scene, taken)
             else:
-                covered = (behind[a] >= LEAST_BEHIND) & (behind[b] >= LEAST_BEHIND)
+                covered = (pairs[a] >= LEAST_BEHIND) & (pairs[b] >= LEAST_BEHIND)
                 joined = _one(first, second, scene) if covered.any() else None
             if joined is not None:
                 kept[a], kept[b] = None, joined
-                behind[b] += behind[a]
+                pairs[b] += pairs[a]
                 break
     return [body for body in kept if body is not None]
 
 
 def _both(a: Body, b: Body) -> Body:
     """Two bodies as one, by rows and columns as each of them is."""
-    order = _merged(a.u, a.v, b.u, b.v)
+    order = merged(a.u, a.v, b.u, b.v)
     u, v = np.concatenate([a.u, b.u]), np.concatenate([a.v, b.v])
     depth = np.concatenate([a.depth_m, b.depth_m])
     points = np.concatenate([a.points, b.points])
     return replace(a, u=u, v=v, depth_m=depth, points=points).part(order)
-
-
-@kernel
-def _merged(
-    u: NDArray[np.int32],
-    v: NDArray[np.int32],
-    other_u: NDArray[np.int32],
-    other_v: NDArray[np.int32],
-) -> NDArray[np.int64]:
-    """Order by rows, then columns, of pixels and the other pixels behind them."""
-    n, m = len(u), len(other_u)
-    out, i, j = np.empty(n + m, np.int64), 0, 0
-    for k in range(n + m):
-        if j == m or (i < n and (v[i] < other_v[j] or (v[i] == other_v[j] and u[i] < other_u[j]))):
-            out[k] = i
-            i += 1
-        else:
-            out[k] = n + j
-            j += 1
-    return out
 
 
 def _level_m(a: Body, b: Body) -> float:
@@ -157,7 +135,7 @@ def _seen_down(
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """Pixels that aren't taken, whose sight lines come down through a body's top within a hull."""
     margin, top = OUTLINE_M + 2.0 * body.sigma_m, _top_m(body)
-    return _through(
+    return through(
         scene.depth_m,
         scene.intrinsics,
         scene.T_map_camera,
@@ -193,104 +171,7 @@ def _one(a: Body, b: Body, scene: Scene) -> Body | None:
     hull = _hull(both)
     margin = OUTLINE_M + 2.0 * both.sigma_m
     top = _top_m(both) - BELOW_TOP_M
-    if min(_share_on(p.points, top, *hull, margin) for p in (a, b)) < OUTLINE_SHARE:
+    if min(share_on(p.points, top, *hull, margin) for p in (a, b)) < OUTLINE_SHARE:
         return None
     u, _ = _seen_down(scene, scene.labels >= 0, both, hull)
     return both if len(u) < SEEN_THROUGH else None
-
-
-@kernel
-def _share_on(
-    points: NDArray[np.float64],
-    top_m: float,
-    normals: NDArray[np.float64],
-    offsets: NDArray[np.float64],
-    margin: float,
-) -> float:
-    """Share of the points (N, 3) below a height that lie on the border of a convex outline."""
-    near = total = 0
-    for k in range(len(points)):
-        if points[k, 2] > top_m:
-            continue
-        total += 1
-        near += _inwards(points[k, 0], points[k, 1], normals, offsets) < margin
-    return near / total if total else 1.0
-
-
-@kernel
-def _inwards(
-    x: float, y: float, normals: NDArray[np.float64], offsets: NDArray[np.float64]
-) -> float:
-    """How far within a convex outline a point lies, m; below 0 outside."""
-    least = 1e9
-    for k in range(len(offsets)):
-        least = min(least, x * normals[k, 0] + y * normals[k, 1] - offsets[k])
-    return least
-
-
-@kernel
-def _through(
-    depth_m: NDArray[np.float32],
-    intrinsics: NDArray[np.float64],
-    T_map_camera: NDArray[np.float64],
-    taken: NDArray[np.bool_],
-    box: tuple[int, int, int, int],
-    normals: NDArray[np.float64],
-    offsets: NDArray[np.float64],
-    margin: float,
-    top_m: float,
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Columns and rows of pixels that aren't taken and seen through an outline at a height.
-
-    They and their sight lines, where these pass that height, lie within it by a margin, m.
-    """
-    u0, v0, u1, v1 = box
-    us = np.empty((u1 - u0) * (v1 - v0), np.int32)
-    vs = np.empty_like(us)
-    cx, cy, ch = T_map_camera[0, 3], T_map_camera[1, 3], T_map_camera[2, 3]
-    row, n, drop = np.empty((3, depth_m.shape[1]), np.float32), 0, ch - top_m
-    for v in range(v0, v1 if drop > 0 else v0):
-        points_of_row(depth_m, v, intrinsics, T_map_camera, row, u0, u1)
-        for u in range(u0, u1):
-            if taken[v, u] or depth_m[v, u] <= 0:
-                continue
-            x, y, h = row[0, u], row[1, u], row[2, u]
-            if h >= top_m or _inwards(x, y, normals, offsets) <= margin:
-                continue
-            t = drop / (ch - h)
-            x, y = cx + (x - cx) * t, cy + (y - cy) * t
-            if _inwards(x, y, normals, offsets) > margin:
-                us[n], vs[n] = u, v
-                n += 1
-    return us[:n], vs[:n]
-
-
-@kernel
-def _behind(
-    depth_m: NDArray[np.float32],
-    names: NDArray[np.int32],
-    count: int,
-    box: tuple[int, int, int, int],
-    noise: float,
-) -> NDArray[np.int64]:
-    """In how many pixel pairs of a box body p lies behind its neighbour q: (count, count)."""
-    rows, cols = names.shape
-    out = np.zeros((count, count), np.int64)
-    u0, v0, u1, v1 = box
-    for v in range(v0, v1):
-        for u in range(u0, u1):
-            p = names[v, u]
-            if p == 0:
-                continue
-            z = depth_m[v, u]
-            for dv, du in ((0, 1), (1, 0), (0, -1), (-1, 0)):
-                b, a = v + dv, u + du
-                reach = 1
-                while 0 <= b < rows and 0 <= a < cols and depth_m[b, a] <= 0 and reach < 6:
-                    b, a, reach = b + dv, a + du, reach + 1
-                if not (0 <= b < rows and 0 <= a < cols):
-                    continue
-                q = names[b, a]
-                if q != 0 and q != p and depth_m[b, a] < z - step(z, noise):
-                    out[p - 1, q - 1] += 1
-    return out
