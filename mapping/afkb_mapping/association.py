@@ -58,6 +58,10 @@ class Association:
             found[i] = self._see(view, detections[i], track)
         return [self._survivor(t) for t in found]
 
+    def id_now(self, id_: str) -> str:
+        """The id that a track goes by, once others have taken it over."""
+        return self._merged_into.get(id_, id_)
+
     def _survivor(self, track: ObservedTrack | None) -> ObservedTrack | None:
         """A track that was merged away during this view lives on in the one that took it over."""
         if track is None or track in self.tracks:

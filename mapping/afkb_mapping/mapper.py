@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +49,7 @@ class AffordanceMapper:
         self._doorways = DoorwayMerger(passage_width(network.knowledge_base))
         self._grid = GridBuilder()
         self._predictions: list[PredictedTrack] = []
-        self._closures: list[Closure] = []
+        self._closures: list[tuple[Closure, NDArray[np.float64]]] = []
         self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
         self._looked_from: list[NDArray[np.float64]] = []
         self._refuted = 0
@@ -77,7 +78,7 @@ class AffordanceMapper:
             bounds=self._bounds.bounds(),
             doorways=self._doorways.doorways(self._grid.grid()),
             grid=self._grid.grid(),
-            closures=self._closures,
+            closures=self._settled_closures(),
             trajectory=self._trajectory,
             looked_from=self._looked_from,
             counts={
@@ -96,29 +97,40 @@ class AffordanceMapper:
             self._looked_from.append(view.T_map_base[:2, 3])
 
     def _confirm(self, observed: Sequence[ObservedTrack | None], view: View) -> None:
-        for track in dict.fromkeys(t for t in observed if t is not None):
+        """What is seen for sure gives a prediction its place; what is doubtful confirms nothing."""
+        for track in dict.fromkeys(t for t in observed if t is not None and is_kept(t)):
             for prediction in [p for p in self._predictions if fits(p, track)]:
                 self._close(prediction, track, view)
 
     def _close(self, prediction: PredictedTrack, track: ObservedTrack, view: View) -> None:
         """A prediction comes true: it gives way to the observed node that replaces it."""
-        outline = track.footprint.outline()
-        apart = np.hypot(*(prediction.center_xy - outline.center_xy))
         current = self._places.current
-        self._closures.append(
-            Closure(
-                entity=track.id,
-                predicted_as=prediction.kind,
-                predicted_probability=prediction.probability,
-                displacement_m=float(apart),
-                place=current.id if current else "",
-                stamp=view.stamp,
-            )
+        closure = Closure(
+            entity=track.id,
+            predicted_as=prediction.kind,
+            predicted_probability=prediction.probability,
+            displacement_m=0.0,
+            place=current.id if current else "",
+            stamp=view.stamp,
         )
+        self._closures.append((closure, prediction.center_xy))
         track.predicted_first = track.predicted_first or prediction.kind
         track.predicted_from.update(prediction.anchors)
         track.axioms.update(prediction.axioms)
         self._predictions.remove(prediction)
+
+    def _settled_closures(self) -> list[Closure]:
+        """Each with the node that it became, and how far that lies from where it was expected.
+
+        At its first sight mostly a part of a thing shows.
+        """
+        tracks = {t.id: t for t in self._association.tracks}
+        settled = []
+        for closure, expected_xy in self._closures:
+            track = tracks[self._association.id_now(closure.entity)]
+            off = np.hypot(*(expected_xy - track.footprint.outline().center_xy))
+            settled.append(replace(closure, entity=track.id, displacement_m=float(off)))
+        return settled
 
     def _expect(
         self,
@@ -147,7 +159,7 @@ class AffordanceMapper:
         return all(support_of(a, surfaces) is not None for a in anchors)
 
     def _fulfilled(self, prediction: PredictedTrack) -> bool:
-        return any(fits(prediction, track) for track in self._association.tracks)
+        return any(fits(prediction, t) for t in self._association.tracks if is_kept(t))
 
     def _reinforce(self, expected: list[PredictedTrack], view: View) -> None:
         """Raise earlier predictions that this viewpoint makes again; add the new ones."""

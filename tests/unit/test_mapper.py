@@ -54,6 +54,30 @@ def test_the_predicted_support_once_seen_closes_the_loop(mapper):
     assert table.position_xyz == pytest.approx((2.1, 0.0, 0.75), abs=0.03)
 
 
+def test_a_doubtful_support_confirms_nothing(mapper):
+    mapper.add(view(0), [container(2.0, 0.0, on_support=False)], [support_below(0)])
+    doubtful = replace(support(2.1, 0.0), measures={"score": 0.3})
+    mapper.add(view(1, x=3.5, yaw=np.pi, depth_m=0.9), [doubtful], [])
+    found = mapper.finish(np.eye(4))
+    assert not found.closures and of_kind(found, NodeKind.DUAL)
+    mapper.add(view(2, x=3.5, y=1.0, yaw=np.pi), [support(2.1, 0.0)], [])
+    found = mapper.finish(np.eye(4))
+    assert len(found.closures) == 1 and not of_kind(found, NodeKind.DUAL)
+
+
+def test_a_closure_tells_of_the_whole_that_its_part_became(mapper):
+    cup = container(2.0, 0.0, on_support=False)
+    mapper.add(view(0), [cup, support(2.9, 0.0, width=0.4, cut=True)], [support_below(0)])
+    mapper.add(view(1, x=3.5, yaw=np.pi), [support(1.9, 0.0, width=0.4, cut=True)], [])
+    for i in range(2, 5):
+        mapper.add(view(i, x=3.5, y=0.3 * i, yaw=np.pi), [support(2.4, 0.0, width=1.4)], [])
+    found = mapper.finish(np.eye(4))
+    (table,) = [e for e in found.entities if "SupportAbility" in e.affordances]
+    (closure,) = found.closures
+    assert closure.entity == table.id
+    assert closure.displacement_m == pytest.approx(0.4, abs=0.05)
+
+
 def test_a_support_that_is_in_the_map_already_is_not_predicted(mapper):
     mapper.add(view(0), [support(2.0, 0.0)], [])
     mapper.add(view(1, x=0.6, depth_m=1.0), [container(2.0, 0.0)], [support_below(0)])
