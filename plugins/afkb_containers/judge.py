@@ -78,4 +78,4 @@ def _open(stand: Stand, looks: Looks, settings: ContainerSettings) -> float:
     deep *= ramp(opening.depth_m / looks.height_m, DENT)
     around = ramp(opening.rim_share, RIM_SHARE)
     seen = min(1.0, opening.inside_share / INSIDE_SHARE)
-    return deep * (0.5 + 0.5 * around) * (0.5 + 0.5 * seen)
+    return deep * (0.2 + 0.8 * around) * (0.5 + 0.5 * seen)
