@@ -4,16 +4,13 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 SET_UP := pyproject.toml constraints.txt scripts/set-up.sh scripts/apt.sh
 
-.PHONY: demo test kernels lint gates format pictures pins clean
+.PHONY: demo test lint gates format pictures pins clean
 
 demo: $(VENV)/.default  ## map the bundled simulated home and print what was found
 	$(BIN)/afkb demo --out demo-map
 
 test: $(VENV)/.dev  ## run every test
 	$(BIN)/pytest -n 2 --dist loadgroup
-
-kernels: $(VENV)/.dev  ## compile the loops once, so that no test has to wait for them
-	$(BIN)/afkb map world:paper_home --out $(VENV)/kernels-map --stop 20 >/dev/null
 
 lint: $(VENV)/.dev  ## style, formatting and types
 	$(BIN)/ruff check .
