@@ -5,14 +5,23 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb.flow import View
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
+from afkb_mapping.per_view import once_per_view
 from afkb_mapping.sensor_noise import depth_sigma
 
 LEAST_SAMPLES = 20
 ROWS_APART, COLUMNS_APART = 12, 5
 MEDIAN_OF_SECOND_DIFFERENCE = 1.652
 """Median size of z[u-1] - 2 z[u] + z[u+1] for white noise of one standard deviation."""
+
+
+@once_per_view
+def noise_scale_of(view: View) -> float:
+    """`noise_scale` of a view that has depth, for all detectors that ask."""
+    assert view.depth_m is not None
+    return noise_scale(view.depth_m)
 
 
 @kernel

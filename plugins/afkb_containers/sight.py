@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from afkb.flow import Detection, View
 from afkb_mapping.depth_points import intrinsics_of
 from afkb_mapping.image_regions import Rectangle, is_cut, returning_rectangle
-from afkb_mapping.view_noise import noise_scale
+from afkb_mapping.view_noise import noise_scale_of
 
 ENOUGH_PIXELS = 1500
 """So many pixels of a body tell its shape; four times as many are thinned."""
@@ -55,11 +55,6 @@ class Sights:
         return T, np.linalg.inv(T).astype(np.float64)
 
     @cached_property
-    def _noise_scale(self) -> float:
-        assert self._view.depth_m is not None
-        return noise_scale(self._view.depth_m)
-
-    @cached_property
     def _returning(self) -> Rectangle:
         assert self._view.depth_m is not None
         return returning_rectangle(self._view.depth_m)
@@ -74,7 +69,7 @@ class Sights:
             assert self._view.depth_m is not None
             depth_m = np.ascontiguousarray(self._view.depth_m[::step, ::step])
             intrinsics = intrinsics_of(self._view) / step
-            self._made[step] = Sight(depth_m, intrinsics, *self._poses, self._noise_scale)
+            self._made[step] = Sight(depth_m, intrinsics, *self._poses, noise_scale_of(self._view))
         return self._made[step]
 
 

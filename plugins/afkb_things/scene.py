@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from afkb.flow import Detection, View
 from afkb_mapping.depth_points import height_per_depth, intrinsics_of, points_at
 from afkb_mapping.image_regions import order_by_label
-from afkb_mapping.view_noise import noise_scale
+from afkb_mapping.view_noise import noise_scale_of
 from afkb_things.above import fit_supports, label_things
 from afkb_things.roots import roots_of
 from afkb_things.settings import ThingSettings
@@ -78,7 +78,7 @@ class Scene:
         if view.depth_m is None or view.camera is None:
             return None
         intrinsics, T = intrinsics_of(view), view.T_map_camera
-        noise = max(1.0, noise_scale(view.depth_m) / MODEL_WITHIN)
+        noise = max(1.0, noise_scale_of(view) / MODEL_WITHIN)
         s = Supports.of(earlier, T[:3, 3].copy(), noise)
         grid = (s.raster, s.origin_xy)
         coarse = np.ascontiguousarray(view.depth_m[::THIN, ::THIN])
