@@ -66,7 +66,7 @@ class Association:
         """A track that was merged away during this view lives on in the one that took it over."""
         if track is None or track in self.tracks:
             return track
-        return next(t for t in self.tracks if t.id == self._merged_into[track.id])
+        return next(t for t in self.tracks if t.id == self.id_now(track.id))
 
     def _see(self, view: View, detection: Detection, track: ObservedTrack | None) -> ObservedTrack:
         if track is None:

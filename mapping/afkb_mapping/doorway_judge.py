@@ -11,7 +11,8 @@ from afkb.flow import OccupancyGrid
 from afkb_mapping.bounds import WALL_M
 from afkb_mapping.detour import room_to_room, way_free
 from afkb_mapping.free_space import OCCUPIED_ABOVE
-from afkb_mapping.straight_runs import runs_m, thickness_m
+from afkb_mapping.straight_runs import JAMB_REACH_M, runs_m, thickness_m
+from afkb_mapping.trapezoids import ramp
 from afkb_mapping.upright_cells import UprightCells
 
 Array = NDArray[np.float64]
@@ -38,8 +39,6 @@ OBSTRUCTED = (0.1, 0.4)
 """Share of the line between the jambs, on which something stands: a door leaf, or a shelf."""
 FAINT = 0.05
 """Below this no grid makes it likely."""
-JAMB_REACH_M = 0.15
-"""What stands this near to where a jamb ends is the jamb."""
 ACROSS_STEP_M = 0.1
 
 
@@ -67,7 +66,7 @@ class DoorwayJudge:
         p = gap
         for jamb, share in zip(jambs_xy, tall, strict=True):
             p *= self._is_jamb(jamb[None], share, low_jamb)
-        p *= 1 - ramp(self._stands_between(jambs_xy), *OBSTRUCTED)
+        p *= 1 - ramp(self._stands_between(jambs_xy), OBSTRUCTED)
         if p >= FAINT and not any(map(math.isnan, tall)):
             p *= beside_wall(jambs_xy, self._tall, self._grid)
         return p * room_to_room(jambs_xy, self.free, self._grid) if p >= FAINT else 0.0
@@ -82,7 +81,8 @@ class DoorwayJudge:
         if math.isnan(tall):
             return UNKNOWN_HEIGHT
         knee = self._upright.knee_high(jamb_xy, JAMB_REACH_M)
-        return ramp(tall, *TALL_SHARE, KNEE_JAMB if knee > MOSTLY else low_jamb)
+        low = KNEE_JAMB if knee > MOSTLY else low_jamb
+        return low + (1 - low) * ramp(tall, TALL_SHARE)
 
     def _stands_between(self, jambs_xy: Array) -> float:
         """Share of the line between two jambs on which something stands."""
@@ -96,14 +96,9 @@ class DoorwayJudge:
 
 def beside_wall(jambs_xy: Array, tall: Mask, grid: OccupancyGrid) -> float:
     """How well one of two jambs (2, 2), m, is of a wall, 0 to 1; `tall`: (rows, cols)."""
-    return ramp(max(runs_m(tall, jambs_xy, grid)), *WALL_BESIDE_M)
+    return ramp(max(runs_m(tall, jambs_xy, grid)), WALL_BESIDE_M)
 
 
 def through_wall(jambs_xy: Array, tall: Mask, grid: OccupancyGrid) -> float:
     """How well a gap between jambs (2, 2), m, leads through a wall and along no aisle, 0 to 1."""
-    return 1 - ramp(min(thickness_m(tall, jambs_xy, grid)), *WALL_THICK_M)
-
-
-def ramp(value: float, low: float, high: float, least: float = 0.0) -> float:
-    """From `least` at or below `low` to 1 at or above `high`."""
-    return least + (1 - least) * min(1.0, max(0.0, (value - low) / (high - low)))
+    return 1 - ramp(min(thickness_m(tall, jambs_xy, grid)), WALL_THICK_M)

@@ -19,7 +19,7 @@ from afkb_mapping.detour import is_narrow
 from afkb_mapping.doorway_gaps import SAME_M, SAME_RAD
 from afkb_mapping.kernels import kernel
 from afkb_mapping.straight_runs import runs_m
-from afkb_mapping.trapezoids import Limits, membership
+from afkb_mapping.trapezoids import Limits, membership, ramp
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -49,11 +49,10 @@ def gaps_of_map(
     `free`, `standing`: (rows, cols) of the grid, where the floor was seen, and where things stand;
     `width_m`: trapezoid of how wide passages are.
     """
-    leg, end = JAMB_LENGTH_M
     for jambs in narrow_places(free, standing, grid, width_m[0], width_m[3]):
         p = SURE * membership(math.dist(*jambs.tolist()), width_m)
         for length in runs_m(standing, jambs, grid):
-            p *= min(1.0, max(0.0, (length - leg) / (end - leg)))
+            p *= ramp(length, JAMB_LENGTH_M)
         if p > 0:
             yield jambs, p * leads_on(jambs, free, grid)
 
@@ -88,8 +87,7 @@ def leads_on(jambs_xy: Array, free: Mask, grid: OccupancyGrid) -> float:
         inside = ((cells >= 0) & (cells < free.shape[::-1])).all(axis=1)
         cols, rows = cells[inside].T
         shares.append(float(free[rows, cols].sum()) / len(points))
-    low, high = BEYOND_SHARE
-    return min(1.0, max(0.0, (min(shares) - low) / (high - low)))
+    return ramp(min(shares), BEYOND_SHARE)
 
 
 def _one_a_place(jambs: Array) -> Iterator[Array]:

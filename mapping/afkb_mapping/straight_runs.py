@@ -15,7 +15,7 @@ Mask = NDArray[np.bool_]
 
 LONGEST_M = 2.0
 """No more is measured to either side."""
-REACH_M = 0.15
+JAMB_REACH_M = 0.15
 """What stands this near to where a jamb ends is the jamb."""
 FACE_M = 0.08
 """What lies this near to it, its own cell and those beside it, is its face: a wall that runs on
@@ -32,8 +32,8 @@ def runs_m(standing: Mask, jambs_xy: Array, grid: OccupancyGrid) -> tuple[float,
 
     Along the line between them or across it; 0 where nothing is marked at a jamb.
     """
-    along = _runs(standing, jambs_xy, grid, 0.0, REACH_M, MOST_TILT_RAD)
-    across = _runs(standing, jambs_xy, grid, math.pi / 2, REACH_M, MOST_TILT_RAD)
+    along = _runs(standing, jambs_xy, grid, 0.0, JAMB_REACH_M, MOST_TILT_RAD)
+    across = _runs(standing, jambs_xy, grid, math.pi / 2, JAMB_REACH_M, MOST_TILT_RAD)
     return max(along[0], across[0]), max(along[1], across[1])
 
 
