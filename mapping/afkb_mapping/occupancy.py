@@ -57,7 +57,7 @@ class GridBuilder:
             raise BadFrame("insert_scan: this view has no laser scan")
         T_map_laser = view.T_map_laser
         ends = transform_xy(T_map_laser, view.scan.points_xy)
-        self._insert(T_map_laser[:2, 3], ends, np.ones(len(ends), dtype=bool))
+        self.insert_beams(T_map_laser[:2, 3], ends, np.ones(len(ends), dtype=bool))
 
     def insert_depth_obstacles(
         self, obstacles_xy: Points, sensor_xy: Points, floor_xy: Points | None = None
@@ -70,7 +70,7 @@ class GridBuilder:
         """
         obstacles = np.asarray(obstacles_xy, dtype=np.float64).reshape(-1, 2)
         if floor_xy is None:
-            self._insert(sensor_xy, obstacles, np.ones(len(obstacles), dtype=bool))
+            self.insert_beams(sensor_xy, obstacles, np.ones(len(obstacles), dtype=bool))
             return
         floor = np.asarray(floor_xy, dtype=np.float64).reshape(-1, 2)
         points = np.concatenate([obstacles, floor])
@@ -83,7 +83,11 @@ class GridBuilder:
             verdict[rows, cols] = value
         self._apply(verdict, part)
 
-    def _insert(self, sensor_xy: Points, ends_xy: Points, hit: NDArray[np.bool_]) -> None:
+    def insert_beams(self, sensor_xy: Points, ends_xy: Points, hit: NDArray[np.bool_]) -> None:
+        """Take in beams from a sensor (2,) to their ends (N, 2), m, map frame.
+
+        Each clears its way; where it ends stands something, if `hit` (N,).
+        """
         from afkb_mapping.ray_kernel import trace_beams
 
         if not len(ends_xy):

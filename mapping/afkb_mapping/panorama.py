@@ -59,6 +59,12 @@ class Panorama:
     obstacle_m: Array
     free_m: Array
 
+    def ends_xy(self, ranges_m: Array) -> Array:
+        """(N, 2) m: where distances in each direction end."""
+        along = np.column_stack([np.cos(self.bearings), np.sin(self.bearings)])
+        ends: Array = self.center_xy + ranges_m[:, None] * along
+        return ends
+
     def at(self, points_xy: Array) -> tuple[NDArray[np.intp], Array]:
         """Index of the direction of points (M, 2), map frame, and their distances, m."""
         off = points_xy - self.center_xy

@@ -38,10 +38,12 @@ def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
 
 @hookimpl
 def afkb_commands(cli: typer.Typer, knowledge_base: AfNet) -> None:
-    """Add `map`, `demo` and `detect`."""
+    """Add `map`, `demo`, `detect` and `locate`."""
     from afkb_mapping.commands import demo, map_
     from afkb_mapping.detect_command import detect
+    from afkb_mapping.localisation.locate_command import locate
 
     cli.command(name="map")(map_)
     cli.command()(demo)
     cli.command()(detect)
+    cli.command()(locate)

@@ -16,6 +16,7 @@ from afkb.plugins.protocols import Mapper, Predictor
 from afkb.store import check_out, write_map
 from afkb_mapping.interruption import Interruption
 from afkb_mapping.levelling import Level, level
+from afkb_mapping.localisation.bands import STATE_FILE, BandBuilder
 from afkb_mapping.perception import Perception, blamed
 from afkb_mapping.placed_views import placed_views, skipped
 from afkb_mapping.run_record import Settings, Stages, run_record
@@ -88,7 +89,7 @@ def make_map(
             run,
             exporters=[e for e in host.exporters() if e.in_map_folder],
             knowledge_base=host.knowledge_base,
-            state=_state(found),
+            state=_state(found, crew.bands),
         )
     return RunResult(found, run, interruption.signal)
 
@@ -101,6 +102,7 @@ class _Crew:
     predictors: Sequence[Predictor]
     mapper: Mapper
     stages: Stages
+    bands: BandBuilder = field(default_factory=BandBuilder)
 
     @classmethod
     def of(cls, host: PluginHost, settings: Settings, stages: Stages) -> _Crew:
@@ -123,6 +125,8 @@ class _Crew:
             raise BadFrame(str(error)) from error
         with self.stages.timed("map"), blamed("mapper", type(self.mapper).__name__):
             self.mapper.add(view, detections, hypotheses)
+        with self.stages.timed("bands"):
+            self.bands.add(view)
 
     def _predict(self, detections: Sequence[Detection]) -> list[Hypothesis]:
         hypotheses: list[Hypothesis] = []
@@ -174,8 +178,11 @@ def _finished(mapper: Mapper, levelled: Level, way: _Way) -> TopologicalMap:
     return replace(found, notes=(*found.notes, *notes))
 
 
-def _state(found: TopologicalMap) -> dict[str, bytes]:
-    """What continuing needs beyond the RDF: the trajectory, as text that `numpy.loadtxt` reads."""
+def _state(found: TopologicalMap, bands: BandBuilder) -> dict[str, bytes]:
+    """What continuing and locating need beyond the RDF.
+
+    The trajectory, as text that `numpy.loadtxt` reads; what stands where, by height.
+    """
     text = io.StringIO()
     np.savetxt(text, found.trajectory, fmt="%.17g", header="stamp (s), T_map_base row by row (4x4)")
-    return {"trajectory.txt": text.getvalue().encode()}
+    return {"trajectory.txt": text.getvalue().encode(), STATE_FILE: bands.bands().to_bytes()}
