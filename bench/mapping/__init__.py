@@ -1,0 +1,1 @@
+"""How well maps are made and used."""
