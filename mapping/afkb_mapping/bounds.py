@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Bound, Detection
-from afkb_mapping.bound_kernels import best_fit
+from afkb_mapping.bound_kernels import GAP_M, OFFSET_M, best_fit
+from afkb_mapping.box_index import BoxIndex
 
 Array = NDArray[np.float64]
 
@@ -24,7 +25,7 @@ UNSTATED_SIGMA_M = 0.02
 WALL_M = 1.0
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class _Wall:
     """Evidence for one wall: moments of all its segments, from which its line is fitted.
 
@@ -79,6 +80,9 @@ class BoundMerger:
         self._walls: list[_Wall] = []
         self._ends = np.zeros((64, 2, 2))
         self._variances = np.zeros((64, 2))
+        self._rows: dict[_Wall, int] = {}
+        self._boxes: BoxIndex[_Wall] = BoxIndex()
+        self._changed: list[tuple[Array, Array]] = []
 
     def add(self, detection: Detection, place: str | None = None) -> None:
         """Take in one detected bound; `place`, the id of the robot place, is for the caller's log.
@@ -111,32 +115,52 @@ class BoundMerger:
             self._variances = np.concatenate([self._variances, np.zeros_like(self._variances)])
         self._ends[len(self._walls)] = wall.ends
         self._variances[len(self._walls)] = np.square(wall.sigmas)
+        self._rows[wall] = len(self._walls)
         self._walls.append(wall)
+        box = wall.ends.min(axis=0), wall.ends.max(axis=0)
+        self._boxes.put(wall, *box)
+        self._changed.append(box)
+
+    def changed(self) -> list[tuple[Array, Array]]:
+        """Corners (2,), m, of the boxes around walls that are new or moved since it was asked."""
+        changed, self._changed = self._changed, []
+        return changed
 
     def _remove(self, index: int) -> _Wall:
         """Take a wall out; the last one takes its row."""
         wall, last = self._walls[index], self._walls.pop()
+        self._boxes.remove(wall)
+        del self._rows[wall]
         if last is not wall:
+            self._rows[last] = index
             self._walls[index], self._ends[index] = last, last.ends
             self._variances[index] = self._variances[len(self._walls)]
         return wall
 
     def _match(self, segment: _Wall) -> int | None:
         """Index of the wall that a segment continues or repeats, the one it fits best."""
-        n = len(self._walls)
+        # Walls further away than a gap along and an offset across the line are no match.
+        near = self._near(segment.ends, GAP_M + OFFSET_M)
         best = best_fit(
-            self._ends[:n], self._variances[:n], segment.ends, np.square(segment.sigmas)
+            self._ends[near], self._variances[near], segment.ends, np.square(segment.sigmas)
         )
-        return best if best >= 0 else None
+        return int(near[best]) if best >= 0 else None
+
+    def _near(self, points_xy: Array, reach_m: float = 0.0) -> NDArray[np.intp]:
+        """Rows of the walls that may come within reach of the box around points (N, 2), m."""
+        low, high = points_xy.min(axis=0) - reach_m, points_xy.max(axis=0) + reach_m
+        rows = [self._rows[wall] for wall in self._boxes.near(low, high)]
+        return np.array(sorted(rows), dtype=np.intp)
 
     def part(self, start_xy: Array, end_xy: Array) -> bool:
         """Whether a wall crosses the straight line between two points (2,), m.
 
         Shorter bounds than `WALL_M` are fronts and backs of furniture.
         """
-        if not self._walls:
+        near = self._near(np.array([start_xy, end_xy]))
+        if not len(near):
             return False
-        a, b = self._ends[: len(self._walls)].transpose(1, 0, 2)
+        a, b = self._ends[near].transpose(1, 0, 2)
         step, wall = end_xy - start_xy, b - a
         walls = np.linalg.norm(wall, axis=1) >= WALL_M
         denominator = step[0] * wall[:, 1] - step[1] * wall[:, 0]

@@ -44,7 +44,7 @@ class Footprint:
         self._middle: NDArray[np.float64] | None = None
 
     def __bool__(self) -> bool:
-        return bool(self._hits.any())
+        return bool(self._hits.size)
 
     def _cells(self, points_xy: NDArray[np.float64]) -> NDArray[np.int64]:
         cells = np.floor(points_xy / self.cell_m).astype(np.int64)
@@ -138,6 +138,17 @@ class Footprint:
             centers = (np.argwhere(self.mask()) + self._low).astype(np.float64) + 0.5
             self._points = np.asarray(centers * self.cell_m, dtype=np.float64)
         return self._points
+
+    def extent(self) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+        """Lower left and upper right corner (2,) around all that was ever seen of it, m; or None.
+
+        Cheap to ask for, and never smaller than `box`.
+        """
+        if not self._hits.size:
+            return None
+        corners = np.array([self._low, self._low + self._hits.shape], dtype=np.float64)
+        low, high = corners * self.cell_m
+        return low, high
 
     def box(self) -> NDArray[np.float64]:
         """(2, 2) lower left and upper right corner around the centres of its cells, m."""

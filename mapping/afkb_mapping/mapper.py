@@ -20,9 +20,11 @@ from afkb_mapping.ids import Ids
 from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
 from afkb_mapping.predicted_track import PredictedTrack
+from afkb_mapping.same_thing import around
 from afkb_mapping.snapshot import MapContent, snapshot
 from afkb_mapping.standing import support_of
-from afkb_mapping.tracks import ObservedTrack
+from afkb_mapping.track_index import PredictionIndex
+from afkb_mapping.tracks import SURFACE_CELL_M, ObservedTrack
 from afkb_mapping.update_rules import against, update_rule
 from afkb_mapping.visibility import Look, Sight
 
@@ -33,6 +35,8 @@ OVERLOOKED_LIKELIHOOD_RATIO = 0.55
 """P(not detected | there) over P(not detected | a false cue): detectors find about half of the
 things they have in clear view, and repeat few of their errors from elsewhere."""
 LOOKED_AT_SHARE = 0.7
+STANDS_REACH_M = 3 * SURFACE_CELL_M
+"""What carries a thing lies below it, within the cells that `support_of` allows."""
 GONE_BELOW = 0.2
 
 
@@ -48,7 +52,7 @@ class AffordanceMapper:
         self._bounds = BoundMerger()
         self._doorways = DoorwayMerger(passage_width(network.knowledge_base))
         self._grid = GridBuilder()
-        self._predictions: list[PredictedTrack] = []
+        self._predictions = PredictionIndex()
         self._closures: list[tuple[Closure, NDArray[np.float64]]] = []
         self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
         self._looked_from: list[NDArray[np.float64]] = []
@@ -64,6 +68,7 @@ class AffordanceMapper:
         expected = self._expect(hypotheses, detections, observed, view)  # v_ap, v_ac
         self._reinforce(expected, view)  # v_ap ~ v_ap_m: p rises, c = mean
         self._look_for_missing(view, observed)
+        self._refute_doubtful(expected)
         self._link(view, detections, observed, expected)  # V_r, E_d, E_l
 
     def finish(self, T_map_source: NDArray[np.float64]) -> TopologicalMap:
@@ -71,8 +76,8 @@ class AffordanceMapper:
         self._association.merge_doubles()
         content = MapContent(
             network=self._network,
-            tracks=self._association.tracks,
-            predictions=self._predictions,
+            tracks=list(self._association.tracks),
+            predictions=list(self._predictions),
             places=self._places.places,
             ways=list(self._places.ways),
             bounds=self._bounds.bounds(),
@@ -99,7 +104,9 @@ class AffordanceMapper:
     def _confirm(self, observed: Sequence[ObservedTrack | None], view: View) -> None:
         """What is seen for sure gives a prediction its place; what is doubtful confirms nothing."""
         for track in dict.fromkeys(t for t in observed if t is not None and is_kept(t)):
-            for prediction in [p for p in self._predictions if fits(p, track)]:
+            extent = track.footprint.extent()
+            near = self._predictions.near(*extent) if extent else []
+            for prediction in [p for p in near if fits(p, track)]:
                 self._close(prediction, track, view)
 
     def _close(self, prediction: PredictedTrack, track: ObservedTrack, view: View) -> None:
@@ -124,7 +131,7 @@ class AffordanceMapper:
 
         At its first sight mostly a part of a thing shows.
         """
-        tracks = {t.id: t for t in self._association.tracks}
+        tracks = self._association.tracks
         settled = []
         for closure, expected_xy in self._closures:
             track = tracks[self._association.id_now(closure.entity)]
@@ -155,33 +162,42 @@ class AffordanceMapper:
 
     def _all_stand(self, anchors: Sequence[ObservedTrack]) -> bool:
         """Whether what carries each anchor has been seen."""
-        surfaces = [t for t in self._association.tracks if t.is_surface and is_kept(t)]
-        return all(support_of(a, surfaces) is not None for a in anchors)
+        tracks = self._association.tracks
+        for anchor in anchors:
+            near = tracks.near(*around(anchor.footprint.points(), STANDS_REACH_M))
+            carriers = [*near, tracks.floor] if tracks.floor else near
+            if support_of(anchor, [t for t in carriers if t.is_surface and is_kept(t)]) is None:
+                return False
+        return True
 
     def _fulfilled(self, prediction: PredictedTrack) -> bool:
-        return any(fits(prediction, t) for t in self._association.tracks if is_kept(t))
+        near = self._association.tracks.near(*prediction.place())
+        return any(fits(prediction, t) for t in near if is_kept(t))
 
     def _reinforce(self, expected: list[PredictedTrack], view: View) -> None:
         """Raise earlier predictions that this viewpoint makes again; add the new ones."""
         for i, prediction in enumerate(expected):
-            old = next((p for p in self._predictions if same_prediction(p, prediction)), None)
+            like = self._predictions.like(prediction)
+            old = next((p for p in like if same_prediction(p, prediction)), None)
             if old is None:
                 prediction.id = self._new_id("predicted")
                 prediction.viewpoints.is_new(_eye(view), prediction.center_xy)
-                self._predictions.append(prediction)
+                self._predictions.put(prediction)
                 continue
             if old.viewpoints.is_new(_eye(view), old.center_xy):
                 old.probability = self._rule(old.probability, prediction.probability)
                 old.observations += 1
             joined(old, prediction)
+            self._predictions.put(old)
             expected[i] = old
 
     def _look_for_missing(self, view: View, observed: Sequence[ObservedTrack | None]) -> None:
         """What is seen through counts against; the paper has no such term."""
         seen = {t.id for t in observed if t is not None}
         sight, eye = Sight(view), _eye(view)
-        for track in self._association.tracks:
-            if track.id in seen or track.is_floor:
+        in_reach = sight.reach()
+        for track in self._association.tracks.near(*in_reach):
+            if track.id in seen:
                 continue
             body = track.footprint.points()
             found = sight.look(body, track.look_height_m)
@@ -189,13 +205,30 @@ class AffordanceMapper:
                 track.existence = against(track.existence, EMPTY_LIKELIHOOD_RATIO)
             elif _is_overlooked(track, found, eye) and track.missed_from.is_new(eye, body[0]):
                 track.existence = against(track.existence, OVERLOOKED_LIKELIHOOD_RATIO)
-        for prediction in list(self._predictions):
+        for prediction in self._predictions.near(*in_reach):
             empty = _is_empty(sight.look(prediction.sample_points(), prediction.top_range_m[1]))
             if empty and prediction.empty_from.is_new(eye, prediction.center_xy):
                 prediction.probability = against(prediction.probability, EMPTY_LIKELIHOOD_RATIO)
+            if prediction.probability < GONE_BELOW:
+                self._refute(prediction)
+
+    def _refute_doubtful(self, expected: Sequence[PredictedTrack]) -> None:
+        """Refute what is too unlikely, or has a wall between it and what it is near to.
+
+        Only news may have changed that: of these `expected` ones, or of walls since the last view.
+        """
+        doubtful = dict.fromkeys(expected)
+        for low, high in self._bounds.changed():
+            doubtful.update(dict.fromkeys(self._predictions.near(low, high)))
+        for prediction in doubtful:
+            if prediction not in self._predictions:
+                continue
             if prediction.probability < GONE_BELOW or self._is_walled_off(prediction):
-                self._predictions.remove(prediction)
-                self._refuted += 1
+                self._refute(prediction)
+
+    def _refute(self, prediction: PredictedTrack) -> None:
+        self._predictions.remove(prediction)
+        self._refuted += 1
 
     def _is_walled_off(self, prediction: PredictedTrack) -> bool:
         """Whether a wall has come to light between a prediction and what it is near to."""

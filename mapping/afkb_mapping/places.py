@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import View
+from afkb_mapping.box_index import BoxIndex
 from afkb_mapping.geometry import yaw_of
 
 PLACE_SPACING_M = 2.0
@@ -54,6 +55,7 @@ class Places:
         self.places: list[Place] = []
         self.ways: dict[tuple[str, str], None] = {}
         self.current: Place | None = None
+        self._by_place: BoxIndex[Place] = BoxIndex()
         self._new_id = new_id
 
     def visit(self, view: View, entities: Collection[str], grid: Surroundings) -> Place:
@@ -73,7 +75,8 @@ class Places:
     def _belongs_to(
         self, xy: NDArray[np.float64], entities: set[str], grid: Surroundings
     ) -> Place | None:
-        near = sorted((float(np.hypot(p.x - xy[0], p.y - xy[1])), p.id, p) for p in self.places)
+        around = self._by_place.near(xy - FAR_PLACE_M, xy + FAR_PLACE_M)
+        near = sorted((float(np.hypot(p.x - xy[0], p.y - xy[1])), p.id, p) for p in around)
         for distance, _, place in near:
             at = (place.x, place.y)
             if distance > FAR_PLACE_M or grid.doorway_between(at, xy):
@@ -96,4 +99,5 @@ class Places:
             self._new_id("place"), float(T[0, 3]), float(T[1, 3]), yaw_of(T), view.stamp, view.index
         )
         self.places.append(place)
+        self._by_place.put(place, T[:2, 3], T[:2, 3])
         return place

@@ -50,6 +50,16 @@ class PredictedTrack:
         """Extent of the rectangle, m."""
         return self.high_xy - self.low_xy
 
+    def place(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Corners (2,) of where something may be that fulfils it, m: half its reach around it."""
+        return self.low_xy - self.reach_m / 2, self.high_xy + self.reach_m / 2
+
+    def domain(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Corners (2,) of all that speaks for or against it: its place, and what it is near to."""
+        low, high = self.place()
+        near = self.center_xy if self.near_xy is None else self.near_xy
+        return np.minimum(low, near), np.maximum(high, near)
+
     def sample_points(self, step_m: float = 0.1) -> NDArray[np.float64]:
         """(N, 2) points of its expected upper surface, map frame."""
         axes = [

@@ -35,9 +35,21 @@ class Sight:
 
     def __init__(self, view: View) -> None:
         self._depth_m = view.depth_m
+        self._eye_xy = view.T_map_base[:2, 3] if view.T_map_base is not None else np.zeros(2)
         if view.depth_m is not None:
+            self._eye_xy = view.T_map_camera[:2, 3]
             self._intrinsics = intrinsics_of(view)
             self._T_camera_map = np.asarray(np.linalg.inv(view.T_map_camera), np.float64)
+
+    def reach(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Corners (2,) of a box, map frame, m, outside of which the view looks at nothing."""
+        if self._depth_m is None:
+            return self._eye_xy, self._eye_xy
+        fx, fy, cx, cy = self._intrinsics
+        rows, cols = self._depth_m.shape
+        aside = max(cx + 1, cols - cx) / fx, max(cy + 1, rows - cy) / fy
+        farthest = USABLE_RANGE_M * float(np.linalg.norm([1.0, *aside]))
+        return self._eye_xy - farthest, self._eye_xy + farthest
 
     def look(self, points_xy: NDArray[np.float64], height_m: float, most: int = 200) -> Look:
         """How the view looked at points (N, 2), map frame, that lie `height_m` above the floor.
