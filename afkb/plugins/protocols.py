@@ -93,7 +93,13 @@ class Predictor(Protocol):
 
 @runtime_checkable
 class Mapper(Protocol):
-    """Turns the flow into a map, one viewpoint at a time (paper Algorithm 1)."""
+    """Turns the flow into a map, one viewpoint at a time (paper Algorithm 1).
+
+    - `works_from_memory`: optional; where it is True, the mapper needs no more of a view than is
+      remembered of it (every few pixels of depth, no colour; detections without their pixels and
+      shapes). It is given that and nothing else, and its maps can be resumed and updated: a fresh
+      mapper that is given the same again makes the same map.
+    """
 
     def add(
         self, view: View, detections: Sequence[Detection], hypotheses: Sequence[Hypothesis]

@@ -23,7 +23,22 @@ def map_(
     source: Annotated[
         str, typer.Argument(metavar="SOURCE", help="Recording: a path or URI; see `afkb plugins`.")
     ],
-    out: Annotated[Path, typer.Option(help="Map folder to write; replaced whole if it is a map.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Map folder to write; replaced whole if it is a map.")
+    ] = None,
+    update: Annotated[
+        Path | None,
+        typer.Option(metavar="MAP", help="In place of --out: add a later visit to this map."),
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on where an interrupted run of this stopped.")
+    ] = False,
+    hours_later: Annotated[
+        float | None,
+        typer.Option(
+            min=0, help="With --update: how long after the last visit; else the stamps tell."
+        ),
+    ] = None,
     detector: Annotated[
         list[str] | None, typer.Option(help="Use only this detector; repeat for several.")
     ] = None,
@@ -49,6 +64,8 @@ def map_(
     """Turn a recording into a topological affordance map.
 
     Example: afkb map my-recording/ --out my-map
+
+    Example: afkb map next-day/ --update my-map
     """
     from afkb.plugins.host import PluginHost
     from afkb_mapping.run_record import Settings
@@ -56,7 +73,7 @@ def map_(
     host = PluginHost(extensions=ontology) if ontology else state_of(ctx).host
     settings = Settings(
         uri=source,
-        out=out,
+        out=_folder(out, update),
         detectors=tuple(detector or ()),
         predictors=tuple(predictor or ()),
         mapper=mapper,
@@ -65,6 +82,9 @@ def map_(
         stop=stop,
         stride=stride,
         options=options_of(option or ()),
+        resume=resume,
+        update=update is not None,
+        hours_later=hours_later,
     )
     result = _run(host, settings)
     if json_:
@@ -99,6 +119,15 @@ def demo(
         )
         _print_summary(settings, result)
     _exit_as_interrupted(result)
+
+
+def _folder(out: Path | None, update: Path | None) -> Path:
+    """The map folder to write; one of both options names it."""
+    if (out is None) == (update is None):
+        raise typer.BadParameter("name a map folder by one of --out and --update")
+    folder = out or update
+    assert folder is not None
+    return folder
 
 
 def _run(host: object, settings: Settings) -> RunResult:

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from afkb.flow import View
 from afkb_mapping.geometry import back_project, transform
 from afkb_mapping.occupancy import GridBuilder
+from afkb_mapping.panorama import pixel_step
 
 OBSTACLE_HEIGHTS_M = (0.10, 1.50)
 """What a robot of a person's reach bumps into; below is floor with its noise, sills and carpets."""
 FLOOR_WITHIN_M = 0.05
 MAX_DEPTH_M = 4.0
-PIXEL_STEP = 4
 
 
 def insert_view(grid: GridBuilder, view: View) -> None:
@@ -23,7 +23,7 @@ def insert_view(grid: GridBuilder, view: View) -> None:
         return
     if view.depth_m is None or view.camera is None:
         return
-    pixels = back_project(view.depth_m, view.camera, PIXEL_STEP).reshape(-1, 3)
+    pixels = back_project(view.depth_m, view.camera, pixel_step(view.camera)).reshape(-1, 3)
     with np.errstate(invalid="ignore"):
         seen: NDArray[np.float64] = pixels[pixels[:, 2] < MAX_DEPTH_M].astype(np.float64)
     points = transform(view.T_map_camera, seen)

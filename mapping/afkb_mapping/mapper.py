@@ -43,6 +43,8 @@ GONE_BELOW = 0.2
 class AffordanceMapper:
     """Builds G(V_r ∪ V_ao ∪ V_ap ∪ V_ac, E_d ∪ E_l) in an occupancy grid (paper §II.E)."""
 
+    works_from_memory = True
+
     def __init__(self, network: Network, rule: str) -> None:
         self._network = network
         self._rule = update_rule(rule)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import View
+from afkb.flow import PinholeCamera, View
 from afkb_mapping.depth_points import intrinsics_of
 from afkb_mapping.kernels import kernel
 from afkb_mapping.per_view import once_per_view
@@ -78,8 +78,8 @@ def panorama_of(view: View) -> Panorama | None:
     """The panorama of a placed view; None where it has no depth. Detectors and mapper share it."""
     if view.depth_m is None or view.camera is None:
         return None
-    T, step = view.T_map_camera, max(1, round(view.camera.fx / STEP_PX))
-    ranges = _ranges(view.depth_m, intrinsics_of(view), T, step)
+    T = view.T_map_camera
+    ranges = _ranges(view.depth_m, intrinsics_of(view), T, pixel_step(view.camera))
     ranges[~np.isfinite(ranges)] = np.nan
     turns: Array = (np.arange(BEARINGS, dtype=np.float64) + 0.5) / BEARINGS
     bearings = turns * (2 * math.pi) - math.pi
@@ -88,6 +88,11 @@ def panorama_of(view: View) -> Panorama | None:
     obstacle = np.fmin(low, tall)
     free = np.nan_to_num(np.where(np.isnan(obstacle), floor, obstacle))
     return Panorama(T[:2, 3].copy(), bearings, low, waist, tall, floor, obstacle, free)
+
+
+def pixel_step(camera: PinholeCamera) -> int:
+    """Every so many pixels of a row, and of a column, say what stands where."""
+    return max(1, round(camera.fx / STEP_PX))
 
 
 @kernel

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -17,10 +17,19 @@ from afkb_mapping.selection import Selection
 
 
 def placed_views(
-    selection: Selection, T_map_source: NDArray[np.float64], stages: Stages
+    selection: Selection,
+    T_map_source: NDArray[np.float64],
+    stages: Stages,
+    known: Iterable[View] = (),
 ) -> Iterator[View | SkippedFrame]:
-    """Every frame of a selection, placed in the map frame, or why it can't be."""
+    """Every frame of a selection, placed in the map frame, or why it can't be.
+
+    `known`: placed views of earlier visits, which the first ones are registered to.
+    """
     registration, gate = ScanRegistration(T_map_source), PoseGate()
+    with stages.timed("register"):
+        for view in known:
+            registration.recall(view)
     for frame in _read(selection, stages):
         if isinstance(frame, SkippedFrame):
             yield frame

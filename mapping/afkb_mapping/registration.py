@@ -93,6 +93,11 @@ class ScanRegistration:
             return PlacedPose(T_predicted, self._covariance + self._drift, True, 1.0)
         return self._match(scan, T_predicted)
 
+    def recall(self, view: View) -> None:
+        """Let the scan of a view that an earlier visit placed be part of the map."""
+        assert view.T_map_base is not None
+        self._map.add(_surface_in_map(view, view.T_map_base))
+
     def _step_covariance(self, T_odom_base: Array) -> Array:
         """(3, 3) of odometry's step since the last view."""
         if self._T_odom_base is None:

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import io
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from afkb.errors import BadFrame, PluginError, SourceError
-from afkb.flow import Detection, Hypothesis, SkippedFrame, TopologicalMap, View
+from afkb.errors import BadFrame, SourceError
+from afkb.flow import SkippedFrame, TopologicalMap, View
 from afkb.plugins.host import PluginHost
-from afkb.plugins.protocols import Mapper, Predictor
 from afkb.store import check_out, write_map
+from afkb_mapping.crew import Crew
 from afkb_mapping.interruption import Interruption
-from afkb_mapping.levelling import Level, level
-from afkb_mapping.localisation.bands import STATE_FILE, BandBuilder
-from afkb_mapping.perception import Perception, blamed
-from afkb_mapping.placed_views import placed_views, skipped
+from afkb_mapping.localisation.bands import STATE_FILE
+from afkb_mapping.memory.storing import MEMORY_FILE, to_bytes
+from afkb_mapping.memory.visit import Visit
+from afkb_mapping.placed_views import skipped
 from afkb_mapping.run_record import Settings, Stages, run_record
 from afkb_mapping.selection import Selection
+from afkb_mapping.visits.beginning import beginning_of, check_continuing
 
 NO_DEPTH = "no depth in this recording: the map has a grid and rooms by their shape, no affordances"
 
@@ -62,18 +63,20 @@ def make_map(
         with stages.timed("start"):
             source = host.open_source(settings.uri, settings.options)
             selection = Selection(source, settings.frames)
-            crew = _Crew.of(host, settings, stages)
-        with stages.timed("level"):
-            levelled = level(selection.sample(), selection.gravity_aligned)
-        way = _Way(crew)
-        for done in way.along(placed_views(selection, levelled.T_map_source, stages)):
+            check_continuing(host, settings)
+        with stages.timed("begin"):
+            beginning = beginning_of(settings, selection)
+        crew = Crew.of(host, settings, stages, beginning.memory, beginning.recollection)
+        way = _Way(crew, beginning.visit)
+        for done in way.along(beginning.placed_views(selection, stages)):
             progress(Progress(done, len(selection), way.frames_per_second))
             if interruption.signal is not None:
                 break
+        beginning.check_end(settings, interruption.signal)
         if not way.used:
             raise SourceError(selection.nothing_usable(way.skipped))
         with stages.timed("finish"):
-            found = _finished(crew.mapper, levelled, way)
+            found = _finished(crew, beginning.visit, way)
         run = run_record(
             settings,
             stages,
@@ -82,6 +85,7 @@ def make_map(
             way.frames_per_second,
             interruption.signal,
             found,
+            beginning.memory.visits,
         )
         write_map(
             settings.out,
@@ -89,59 +93,18 @@ def make_map(
             run,
             exporters=[e for e in host.exporters() if e.in_map_folder],
             knowledge_base=host.knowledge_base,
-            state=_state(found, crew.bands),
+            update=settings.update,
+            state=_state(found, crew),
         )
     return RunResult(found, run, interruption.signal)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Crew:
-    """The plugins that a run uses."""
-
-    perception: Perception
-    predictors: Sequence[Predictor]
-    mapper: Mapper
-    stages: Stages
-    bands: BandBuilder = field(default_factory=BandBuilder)
-
-    @classmethod
-    def of(cls, host: PluginHost, settings: Settings, stages: Stages) -> _Crew:
-        return cls(
-            Perception(host.detectors(settings.detectors), stages),
-            host.predictors(settings.predictors),
-            host.mapper_factory(settings.mapper)(settings.rule),
-            stages,
-        )
-
-    def take_in(self, view: View) -> None:
-        """One placed view, from what is detected in it to the map.
-
-        Raises `BadFrame` where a detector or predictor fails on it, before the map has changed.
-        """
-        try:
-            detections = self.perception.detections(view)
-            hypotheses = self._predict(detections)
-        except PluginError as error:
-            raise BadFrame(str(error)) from error
-        with self.stages.timed("map"), blamed("mapper", type(self.mapper).__name__):
-            self.mapper.add(view, detections, hypotheses)
-        with self.stages.timed("bands"):
-            self.bands.add(view)
-
-    def _predict(self, detections: Sequence[Detection]) -> list[Hypothesis]:
-        hypotheses: list[Hypothesis] = []
-        for predictor in self.predictors:
-            name = predictor.name
-            with self.stages.timed(f"predict {name}"), blamed("predictor", name):
-                hypotheses += predictor.predict(detections)
-        return hypotheses
 
 
 @dataclass(slots=True, eq=False)
 class _Way:
     """The way through a recording: frame by frame, counting what was used and what was not."""
 
-    crew: _Crew
+    crew: Crew
+    visit: Visit
     used: int = 0
     with_depth: int = 0
     skipped: list[SkippedFrame] = field(default_factory=list)
@@ -163,7 +126,7 @@ class _Way:
 
     def _take_in(self, view: View) -> None:
         try:
-            self.crew.take_in(view)
+            self.crew.take_in(self.visit.numbered(view))
         except BadFrame as error:
             self.skipped.append(skipped(view, error))
             return
@@ -171,18 +134,22 @@ class _Way:
         self.with_depth += view.depth_m is not None
 
 
-def _finished(mapper: Mapper, levelled: Level, way: _Way) -> TopologicalMap:
-    found = mapper.finish(levelled.T_map_source)
+def _finished(crew: Crew, visit: Visit, way: _Way) -> TopologicalMap:
+    found = crew.finish(visit.T_map_source)
     nothing = NO_DEPTH if not way.with_depth else None if found.entities else NOTHING_SEEN
-    notes = (n for n in (levelled.note, nothing) if n)
+    notes = (n for n in (*visit.notes, nothing) if n)
     return replace(found, notes=(*found.notes, *notes))
 
 
-def _state(found: TopologicalMap, bands: BandBuilder) -> dict[str, bytes]:
+def _state(found: TopologicalMap, crew: Crew) -> dict[str, bytes]:
     """What continuing and locating need beyond the RDF.
 
-    The trajectory, as text that `numpy.loadtxt` reads; what stands where, by height.
+    The trajectory, as text that `numpy.loadtxt` reads; what stands where, by height; and what is
+    remembered of the views, where the mapper works from that.
     """
     text = io.StringIO()
     np.savetxt(text, found.trajectory, fmt="%.17g", header="stamp (s), T_map_base row by row (4x4)")
-    return {"trajectory.txt": text.getvalue().encode(), STATE_FILE: bands.bands().to_bytes()}
+    state = {"trajectory.txt": text.getvalue().encode(), STATE_FILE: crew.bands().to_bytes()}
+    if crew.works_from_memory:
+        state[MEMORY_FILE] = to_bytes(crew.memory)
+    return state

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from afkb import __version__
 from afkb.flow import SkippedFrame, TopologicalMap
+from afkb_mapping.memory.visit import Visit
 from afkb_mapping.selection import FrameRange
 
 RECORDED_PACKAGES = ("numpy", "numba", "open3d-cpu", "opencv-python-headless", "pgmpy", "rosbags")
@@ -23,7 +24,11 @@ MAX_LISTED_SKIPS = 20
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What a run is asked to do; all of it is recorded in run.json."""
+    """What a run is asked to do; all of it is recorded in run.json.
+
+    `resume`: go on where an interrupted run to `out` stopped. `update`: `out` is the map of an
+    earlier visit; `hours_later` than that this one is, None where the stamps are to tell.
+    """
 
     uri: str
     out: Path
@@ -35,6 +40,9 @@ class Settings:
     stop: int | None = None
     stride: int = 1
     options: dict[str, str] = field(default_factory=dict)
+    resume: bool = False
+    update: bool = False
+    hours_later: float | None = None
 
     @property
     def frames(self) -> FrameRange:
@@ -67,6 +75,7 @@ def run_record(
     frames_per_second: float,
     interrupted: int | None,
     topological_map: TopologicalMap,
+    visits: Sequence[Visit],
 ) -> dict[str, object]:
     """What run.json holds: all that tells how the map came to be."""
     return {
@@ -81,7 +90,11 @@ def run_record(
             "stop": settings.stop,
             "stride": settings.stride,
             "options": settings.options,
+            "resume": settings.resume,
+            "update": settings.update,
+            "hours_later": settings.hours_later,
         },
+        "visits": [visit.as_json() for visit in visits],
         "versions": {
             "afkb": __version__,
             "python": platform.python_version(),

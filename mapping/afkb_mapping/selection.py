@@ -31,6 +31,11 @@ class Selection:
         return len(self._range)
 
     @property
+    def frames_there_are(self) -> int:
+        """How many frames the source has, in the range or not."""
+        return len(self._source)
+
+    @property
     def gravity_aligned(self) -> bool:
         """Whether z of the source's pose frame points up."""
         return self._source.gravity_aligned

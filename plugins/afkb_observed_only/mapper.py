@@ -22,6 +22,8 @@ from afkb_mapping.snapshot import MapContent, snapshot
 class ObservedOnlyMapper:
     """Places, observed things and bounds; hypotheses are left aside, nothing ever vanishes."""
 
+    works_from_memory = True
+
     def __init__(self, network: Network) -> None:
         self._network = network
         new_id = Ids()
