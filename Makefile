@@ -10,7 +10,7 @@ demo: $(VENV)/.default  ## map the bundled simulated home and print what was fou
 	$(BIN)/afkb demo --out demo-map
 
 test: $(VENV)/.dev  ## run every test
-	$(BIN)/pytest -n 2 --dist loadgroup
+	$(BIN)/pytest -n 2 --dist loadgroup --no-loadscope-reorder
 
 lint: $(VENV)/.dev  ## style, formatting and types
 	$(BIN)/ruff check .
