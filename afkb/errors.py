@@ -34,3 +34,7 @@ class MapError(AfkbError):
 
 class QueryError(AfkbError):
     """A SPARQL query that can't be parsed or isn't allowed."""
+
+
+class RouteError(AfkbError):
+    """A route that isn't there, or whose ends name nothing in the map."""

@@ -38,12 +38,14 @@ def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
 
 @hookimpl
 def afkb_commands(cli: typer.Typer, knowledge_base: AfNet) -> None:
-    """Add `map`, `demo`, `detect` and `locate`."""
+    """Add `map`, `demo`, `detect`, `locate` and `route`."""
     from afkb_mapping.commands import demo, map_
     from afkb_mapping.detect_command import detect
     from afkb_mapping.localisation.locate_command import locate
+    from afkb_mapping.routes.route_command import route
 
     cli.command(name="map")(map_)
     cli.command()(demo)
     cli.command()(detect)
     cli.command()(locate)
+    cli.command()(route)
