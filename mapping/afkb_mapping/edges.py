@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,35 +15,52 @@ from afkb_mapping.geometry import wrap_angle
 
 def edges_of(
     places: Sequence[RobotPlace],
-    ways: Sequence[tuple[str, str]],
+    ways: Sequence[tuple[str, str, float]],
     entities: Sequence[Entity],
     seen: Mapping[str, Sequence[str]],
     bounds: Sequence[Bound],
 ) -> Iterator[Edge]:
     """All edges, m and rad in the map frame.
 
+    `ways`: from place to place with the length of the way, which is the weight of such an edge; its
+    bearing is that of the straight line. All other distances are straight, E_d to a thing, E_l to
+    the nearest point of a bound.
+
     Between places the linkage angle is |r_θi - r_θj| of the robot's headings, to things and bounds
     it is |r_θi - c_θj| (paper Algorithm 1).
     """
     place_of = {p.id: p for p in places}
     entity_of = {e.id: e for e in entities}
-    for source, target in ways:
+    for source, target, length in ways:
         a, b = place_of[source], place_of[target]
         turn = abs(wrap_angle(a.yaw - b.yaw))
-        yield _edge(EdgeKind.PATH, a, b.id, (b.x, b.y), turn)
+        yield replace(_edge(EdgeKind.PATH, a, b.id, (b.x, b.y), turn), distance=length)
+    implied, in_room = _by_place(entities), _by_room(bounds)
     for place in places:
         for id_ in seen[place.id]:
             yield _edge(EdgeKind.OBSTACLE, place, id_, entity_of[id_].position_xyz[:2])
-        for entity in entities:
-            if (
-                entity.predicted_from
-                and place.id in entity.seen_from
-                and entity.id not in seen[place.id]
-            ):
+        known = set(seen[place.id])
+        for entity in implied[place.id]:
+            if entity.id not in known:
                 yield _edge(EdgeKind.OBSTACLE, place, entity.id, entity.position_xyz[:2])
-        for bound in bounds:
-            if bound.room == place.room and bound.room is not None:
-                yield _edge(EdgeKind.BOUND, place, bound.id, _nearest_point(bound, place))
+        for bound in in_room[place.room] if place.room is not None else ():
+            yield _edge(EdgeKind.BOUND, place, bound.id, _nearest_point(bound, place))
+
+
+def _by_place(entities: Sequence[Entity]) -> Mapping[str, list[Entity]]:
+    """What follows from others, by the places from which it was implied or seen."""
+    found: defaultdict[str, list[Entity]] = defaultdict(list)
+    for entity in entities:
+        for place in entity.seen_from if entity.predicted_from else ():
+            found[place].append(entity)
+    return found
+
+
+def _by_room(bounds: Sequence[Bound]) -> Mapping[str | None, list[Bound]]:
+    found: defaultdict[str | None, list[Bound]] = defaultdict(list)
+    for bound in bounds:
+        found[bound.room].append(bound)
+    return found
 
 
 def _edge(

@@ -81,7 +81,7 @@ class AffordanceMapper:
             tracks=list(self._association.tracks),
             predictions=list(self._predictions),
             places=self._places.places,
-            ways=list(self._places.ways),
+            ways=dict(self._places.ways),
             bounds=self._bounds.bounds(),
             doorways=self._doorways.doorways(self._grid.grid()),
             grid=self._grid.grid(),

@@ -49,12 +49,16 @@ class Place:
 
 
 class Places:
-    """The places in order of discovery, the current one, and the ways taken between them."""
+    """The places in order of discovery, the current one, and the ways taken between them.
+
+    `ways`: from id to id, with how far the robot went at least, m, the one time it went least far.
+    """
 
     def __init__(self, new_id: Callable[[str], str]) -> None:
         self.places: list[Place] = []
-        self.ways: dict[tuple[str, str], None] = {}
+        self.ways: dict[tuple[str, str], float] = {}
         self.current: Place | None = None
+        self._last_xy = np.zeros(2)
         self._by_place: BoxIndex[Place] = BoxIndex()
         self._new_id = new_id
 
@@ -67,10 +71,17 @@ class Places:
         xy = view.T_map_base[:2, 3]
         place = self._belongs_to(xy, set(entities), grid) or self._new_place(view)
         if self.current is not None and self.current is not place:
-            self.ways[(self.current.id, place.id)] = None
-        self.current = place
+            self._go(self.current, place, xy)
+        self.current, self._last_xy = place, xy
         place.seen.update(dict.fromkeys(entities))
         return place
+
+    def _go(self, start: Place, end: Place, xy: NDArray[np.float64]) -> None:
+        """Note a way: from the one place to where the robot was seen last there, and on here."""
+        along = np.array([(start.x, start.y), self._last_xy, xy, (end.x, end.y)])
+        went = float(np.linalg.norm(np.diff(along, axis=0), axis=1).sum())
+        way = start.id, end.id
+        self.ways[way] = min(went, self.ways.get(way, went))
 
     def _belongs_to(
         self, xy: NDArray[np.float64], entities: set[str], grid: Surroundings

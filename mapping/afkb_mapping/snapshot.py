@@ -31,6 +31,7 @@ from afkb_mapping.predicted_track import PredictedTrack
 from afkb_mapping.room_lookup import RoomLookup, room_id
 from afkb_mapping.rooms import Segmentation, segment_rooms
 from afkb_mapping.tracks import ObservedTrack
+from afkb_mapping.way_lengths import way_lengths
 
 SEEN_RELIABLY = ("SupportAbility",)
 """Features whose absence from a visited room says something: their detectors overlook little."""
@@ -43,14 +44,14 @@ class MapContent:
     """What a mapper knows when it is asked for the map.
 
     `trajectory`: stamp (s) and T_map_base (4, 4) of every view; `looked_from`: (2,) m, where the
-    base stood when depth was taken.
+    base stood when depth was taken; `ways`: from place to place, with how far the robot went, m.
     """
 
     network: Network
     tracks: Sequence[ObservedTrack]
     predictions: Sequence[PredictedTrack]
     places: Sequence[Place]
-    ways: Sequence[tuple[str, str]]
+    ways: Mapping[tuple[str, str], float]
     bounds: Sequence[Bound]
     doorways: Sequence[SeenDoorway]
     grid: OccupancyGrid
@@ -79,13 +80,14 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
     places = [_robot_place(p, lookup) for p in content.places]
     bounds = [_bound_in_room(b, lookup) for b in content.bounds]
     seen = {p.id: [i for i in p.seen if i in known] for p in content.places}
+    ways = list(way_lengths(content.grid, places, content.ways))
     return TopologicalMap(
         places=tuple(places),
         entities=tuple(entities),
         bounds=tuple(bounds),
         doorways=tuple(_doorways(segmentation, content.doorways, lookup)),
         rooms=tuple(_rooms(segmentation, lookup, entities, places, content)),
-        edges=tuple(edges_of(places, content.ways, entities, seen, bounds)),
+        edges=tuple(edges_of(places, ways, entities, seen, bounds)),
         grid=_with_things(content.grid, entities),
         T_map_source=T_map_source,
         trajectory=np.array([[stamp, *T.ravel()] for stamp, T in content.trajectory]),

@@ -61,7 +61,7 @@ class ObservedOnlyMapper:
             tracks=self._association.tracks,
             predictions=(),
             places=self._places.places,
-            ways=list(self._places.ways),
+            ways=dict(self._places.ways),
             bounds=self._bounds.bounds(),
             doorways=self._doorways.doorways(self._grid.grid()),
             grid=self._grid.grid(),

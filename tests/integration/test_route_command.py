@@ -3,10 +3,13 @@
 import json
 import math
 
+import pytest
 from typer.testing import CliRunner
 
 from afkb.cli.app import build_cli
 from afkb.plugins.host import PluginHost
+
+pytestmark = pytest.mark.xdist_group("integration")
 
 
 def route(*arguments):

@@ -36,6 +36,7 @@ def test_beyond_a_doorway_is_another_place_and_the_way_leads_there(two_rooms):
     second = visit(places, two_rooms, 2.4, 0.0, ["table"])
     assert second != first
     assert list(places.ways) == [(first, second)]
+    assert places.ways[first, second] == pytest.approx(1.8)
     assert visit(places, two_rooms, 0.6, 0.1, ["table"]) == first
 
 

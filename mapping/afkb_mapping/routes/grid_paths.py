@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))
 """To half of the neighbours; the others are the same edges seen from there."""
+KEPT = 2
+"""Starts of which the ways are kept: on a large plan each takes megabytes."""
 NOWHERE = -9999
 """What scipy gives as the cell before the first one."""
 
@@ -31,10 +33,10 @@ class Reached:
 
 
 class GridPaths:
-    """Paths between free cells of a plan; what was asked once is kept."""
+    """Paths between free cells of a plan, no longer than `limit_m`; the last answers are kept."""
 
-    def __init__(self, where: Drivable) -> None:
-        self._where = where
+    def __init__(self, where: Drivable, limit_m: float = math.inf) -> None:
+        self._where, self._limit_m = where, limit_m
         self._cells = np.argwhere(where.free)
         self._numbers = np.full(where.free.shape, -1, dtype=np.int64)
         self._numbers[tuple(self._cells.T)] = np.arange(len(self._cells))
@@ -82,8 +84,14 @@ class GridPaths:
         number = int(self._numbers[start])
         if number not in self._reached:
             costs, before = csgraph.dijkstra(
-                self._graph, directed=False, indices=number, return_predecessors=True
+                self._graph,
+                directed=False,
+                indices=number,
+                return_predecessors=True,
+                limit=self._limit_m,
             )
+            while len(self._reached) >= KEPT:
+                del self._reached[next(iter(self._reached))]
             self._reached[number] = Reached(costs, before)
         return self._reached[number]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -76,15 +76,15 @@ def search(planner: Planner, kb: AfNet, start: End, kind: Kind) -> Search:
     first = planner.standing.start(start, "--from")
     places = _places(planner, first, chances(kind.category, planner.known, kb), kind)
     cells = [first, *(p.cell for p in places)]
-    legs = {(i, j): _leg(planner, cells, i, j) for i in range(len(cells)) for j in range(i)}
+    legs = {(j, i): _leg(planner, a, b) for (j, a), (i, b) in combinations(enumerate(cells), 2)}
     ways = np.zeros((len(cells), len(cells)))
-    for (i, j), leg in legs.items():
+    for (j, i), leg in legs.items():
         ways[i, j] = ways[j, i] = max(length_of(leg), 1e-6)
     ways = csgraph.shortest_path(ways, method="FW")
     p = np.array([place.probability for place in places])
     order = best_order(p, ways)
     stops = [0, *(i + 1 for i in order.order)]
-    path = [legs[a, b] if a > b else legs[b, a][::-1] for a, b in pairwise(stops)]
+    path = [legs[a, b] if a < b else legs[b, a][::-1] for a, b in pairwise(stops)]
     whole = np.concatenate([path[0], *(leg[1:] for leg in path[1:])])
     nearest, probable = (expected_way(o, p, ways) for o in naive_orders(p, ways))
     ordered = tuple(places[i] for i in order.order)
@@ -100,11 +100,11 @@ def search(planner: Planner, kb: AfNet, start: End, kind: Kind) -> Search:
     )
 
 
-def _leg(planner: Planner, cells: list[Cell], i: int, j: int) -> Array:
-    """The path from cell j to cell i; all of them are reached from the first one."""
-    path = planner.paths.path(cells[j], cells[i])
+def _leg(planner: Planner, start: Cell, end: Cell) -> Array:
+    """The path between two cells; all of them are reached from the first one."""
+    path = planner.paths.path(start, end)
     assert path is not None
-    return path[::-1]
+    return path
 
 
 def _places(planner: Planner, start: Cell, found: list[Chance], kind: Kind) -> list[SearchPlace]:
