@@ -24,7 +24,7 @@ EDGE_OF_MAP_M = 0.1
 LINTELS_KEPT = 50
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class SeenGap:
     """Weighted sums over the views of one gap; jambs (2, 2) in the order of the first view's."""
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, OccupancyGrid, View
+from afkb_mapping.box_index import BoxIndex
 from afkb_mapping.doorway_gaps import (
     EDGE_M,
     EDGE_OF_MAP_M,
@@ -66,6 +67,7 @@ class DoorwayMerger:
     def __init__(self, width_m: Limits = WIDTH_M) -> None:
         self._width_m = width_m
         self._gaps: list[SeenGap] = []
+        self._by_middle: BoxIndex[SeenGap] = BoxIndex()
         self._upright = UprightCells()
         self._has_scans = False
 
@@ -91,11 +93,14 @@ class DoorwayMerger:
             known.see(plan, lintel, eye_xy)
         else:
             known.absorb(jambs, plan, lintel, eye_xy)
+        middle = np.array(known.middle_xy)
+        self._by_middle.put(known, middle, middle)
 
     def _known(self, jambs_xy: Array) -> SeenGap | None:
         (ax, ay), (bx, by) = jambs_xy.tolist()
         middle, best, least = ((ax + bx) / 2, (ay + by) / 2), None, SAME_M
-        for gap in self._gaps:
+        at = np.array(middle)
+        for gap in self._by_middle.near(at - SAME_M, at + SAME_M):
             off = math.dist(gap.middle_xy, middle)
             if off < least and turn_between(gap.jambs_xy, jambs_xy) < SAME_RAD:
                 best, least = gap, off

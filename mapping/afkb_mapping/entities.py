@@ -10,7 +10,9 @@ from afkb.flow import Entity, NodeKind
 from afkb.inference import Network
 from afkb_mapping.footprint import Outline
 from afkb_mapping.predicted_track import PredictedTrack
+from afkb_mapping.same_thing import around
 from afkb_mapping.standing import FOOT_HIDDEN_M, STANDS_WITHIN_M, support_of
+from afkb_mapping.track_index import TrackIndex
 from afkb_mapping.tracks import ObservedTrack
 
 EXISTS_FROM = 0.5
@@ -28,15 +30,17 @@ SURFACE_THICKNESS_M = 0.02
 def observed_entities(tracks: Sequence[ObservedTrack], network: Network) -> list[Entity]:
     """Entities (V_ao) of the tracks that are sure enough, in order of discovery."""
     kept = [t for t in tracks if is_kept(t)]
-    things = [t for t in kept if not t.is_surface]
-    held = {t.id: holder for t in kept if t.is_surface and (holder := _holder(t, things))}
+    index = TrackIndex.of(kept)
+    held = {t.id: holder for t in kept if t.is_surface and (holder := _holder(t, index))}
     lids = {held[t.id].id: t for t in kept if t.id in held and _is_lid(t, held[t.id])}
     kept = [t for t in kept if t.id not in held]
     outlines = {t.id: t.footprint.outline() for t in kept}
-    surfaces = [t for t in kept if t.is_surface]
+    index = TrackIndex.of(kept)
     known = {t.id for t in kept}
     return [
-        _observed(t, outlines[t.id], support_of(t, surfaces), known, network, lids.get(t.id))
+        _observed(
+            t, outlines[t.id], support_of(t, index.carriers(t)), known, network, lids.get(t.id)
+        )
         for t in kept
         if t.is_floor or not t.is_surface or outlines[t.id].area_m2 >= SMALLEST_SURFACE_M2
     ]
@@ -51,11 +55,13 @@ def is_kept(track: ObservedTrack) -> bool:
     return track.observations > 1 or track.existence >= SUSTAINED
 
 
-def _holder(surface: ObservedTrack, things: Iterable[ObservedTrack]) -> ObservedTrack | None:
+def _holder(surface: ObservedTrack, index: TrackIndex) -> ObservedTrack | None:
     """The container whose own lid or inside a surface is: one thing is one node."""
+    if surface.is_floor:
+        return None
     points = surface.footprint.points()
-    for thing in things:
-        if thing.affordances.get("ContainAbility", 0.0) < EXISTS_FROM:
+    for thing in index.near(*around(points, surface.footprint.cell_m)):
+        if thing.is_surface or thing.affordances.get("ContainAbility", 0.0) < EXISTS_FROM:
             continue
         within = thing.bottom.value < surface.top.value <= thing.top.value + STANDS_WITHIN_M
         if within and thing.footprint.share_within(points, surface.footprint.cell_m) > 0.7:

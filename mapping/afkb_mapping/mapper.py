@@ -20,11 +20,10 @@ from afkb_mapping.ids import Ids
 from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
 from afkb_mapping.predicted_track import PredictedTrack
-from afkb_mapping.same_thing import around
 from afkb_mapping.snapshot import MapContent, snapshot
 from afkb_mapping.standing import support_of
 from afkb_mapping.track_index import PredictionIndex
-from afkb_mapping.tracks import SURFACE_CELL_M, ObservedTrack
+from afkb_mapping.tracks import ObservedTrack
 from afkb_mapping.update_rules import against, update_rule
 from afkb_mapping.visibility import Look, Sight
 
@@ -35,8 +34,6 @@ OVERLOOKED_LIKELIHOOD_RATIO = 0.55
 """P(not detected | there) over P(not detected | a false cue): detectors find about half of the
 things they have in clear view, and repeat few of their errors from elsewhere."""
 LOOKED_AT_SHARE = 0.7
-STANDS_REACH_M = 3 * SURFACE_CELL_M
-"""What carries a thing lies below it, within the cells that `support_of` allows."""
 GONE_BELOW = 0.2
 
 
@@ -165,12 +162,10 @@ class AffordanceMapper:
     def _all_stand(self, anchors: Sequence[ObservedTrack]) -> bool:
         """Whether what carries each anchor has been seen."""
         tracks = self._association.tracks
-        for anchor in anchors:
-            near = tracks.near(*around(anchor.footprint.points(), STANDS_REACH_M))
-            carriers = [*near, tracks.floor] if tracks.floor else near
-            if support_of(anchor, [t for t in carriers if t.is_surface and is_kept(t)]) is None:
-                return False
-        return True
+        return all(
+            support_of(anchor, [t for t in tracks.carriers(anchor) if is_kept(t)]) is not None
+            for anchor in anchors
+        )
 
     def _fulfilled(self, prediction: PredictedTrack) -> bool:
         near = self._association.tracks.near(*prediction.place())

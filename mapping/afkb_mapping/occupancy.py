@@ -7,6 +7,7 @@ says "free" along its way and "occupied" where it ends.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ HALF_DOORWAY_M = 0.55
 MOST_CELLS = 40_000_000
 """What fits into the memory that a run may take: 500 m x 200 m at 5 cm."""
 MARGIN_M = 5.0
-"""The array grows by at least this much, so that growing stays rare."""
+"""The array grows by at least this much, and a quarter of its size, so that growing is rare."""
 
 Points = NDArray[np.float64]
 
@@ -135,7 +136,9 @@ class GridBuilder:
                 return
             low = np.minimum(low, self._first_cell)
             high = np.maximum(high, self._first_cell + size)
-        margin = math.ceil(MARGIN_M / self._resolution)
+        least = math.ceil(MARGIN_M / self._resolution)
+        # In proportion to what there is: the copies of all growing cost no more than the map.
+        margin = np.maximum(least, size // 4) if size.any() else np.array([least, least])
         low, high = low - margin, high + margin
         cols, rows = (int(n) for n in high - low)
         if cols * rows > MOST_CELLS:
@@ -151,11 +154,11 @@ class GridBuilder:
 
     def unknown(self, points_xy: Points) -> NDArray[np.bool_]:
         """(N,) for points (N, 2): whether nothing has been seen in their cells yet."""
-        return ~self._at(points_xy, self._seen)
+        return ~(self._at(points_xy, self._seen) > 0)
 
     def occupied(self, points_xy: Points) -> NDArray[np.bool_]:
         """(N,) for points (N, 2): whether their cells are more likely occupied than free."""
-        return self._at(points_xy, self._log_odds > 0)
+        return self._at(points_xy, self._log_odds) > 0
 
     def in_sight(self, start_xy: tuple[float, float], end_xy: Points) -> bool:
         """Whether nothing that was seen stands on the straight line between two points (m)."""
@@ -187,13 +190,15 @@ class GridBuilder:
         ]
         return bool((sides[0] & sides[1]).any())
 
-    def _at(self, points_xy: Points, cells_where: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """(N,) value of a mask at points, False outside it."""
+    def _at(
+        self, points_xy: Points, values: NDArray[np.float32] | NDArray[np.bool_]
+    ) -> NDArray[np.float32]:
+        """(N,) values of the cells that points are in, 0 outside of the array."""
         cells = self._cells(points_xy)
-        inside = ((cells >= 0) & (cells < cells_where.shape[::-1])).all(axis=1)
-        found = np.zeros(len(points_xy), dtype=bool)
+        inside = ((cells >= 0) & (cells < values.shape[::-1])).all(axis=1)
+        found = np.zeros(len(points_xy), dtype=np.float32)
         cols, rows = cells[inside].T
-        found[inside] = cells_where[rows, cols]
+        found[inside] = values[rows, cols]
         return found
 
     def grid(self) -> OccupancyGrid:
@@ -229,16 +234,28 @@ def rasterise(grid: OccupancyGrid, polygon_xy: Points, probability: float) -> Oc
     """
     if not 0 <= probability <= 1:
         raise ValueError(f"probability {probability} is not in 0..1")
+    return rasterised(grid, [(polygon_xy, probability)])
+
+
+def rasterised(grid: OccupancyGrid, things: Sequence[tuple[Points, float]]) -> OccupancyGrid:
+    """The grid with all of these polygons (N, 2), m, drawn into it, as `rasterise` draws one."""
     import cv2
 
-    grid = _grown(grid, np.asarray(polygon_xy, dtype=np.float64))
-    mask = np.zeros(grid.probability.shape, dtype=np.uint8)
-    corners = (np.asarray(polygon_xy) - grid.origin_xy) / grid.resolution_m - 0.5
-    shift = 8
-    cv2.fillPoly(mask, [np.round(corners * (1 << shift)).astype(np.int32)], 1, shift=shift)
-    drawn = np.fmax(grid.probability, np.float32(probability))
-    filled = np.where(mask > 0, drawn, grid.probability).astype(np.float32)
-    return OccupancyGrid(filled, grid.resolution_m, grid.origin_xy)
+    if not things:
+        return grid
+    grid = _grown(grid, np.concatenate([np.asarray(polygon, np.float64) for polygon, _ in things]))
+    cells = grid.probability.copy()
+    for polygon_xy, probability in things:
+        corners = (np.asarray(polygon_xy) - grid.origin_xy) / grid.resolution_m - 0.5
+        low = np.maximum(np.floor(corners.min(axis=0)).astype(int) - 1, 0)
+        high = np.ceil(corners.max(axis=0)).astype(int) + 2
+        part = cells[low[1] : high[1], low[0] : high[0]]
+        mask = np.zeros(part.shape, dtype=np.uint8)
+        shift = 8
+        fixed = np.round((corners - low) * (1 << shift)).astype(np.int32)
+        cv2.fillPoly(mask, [fixed], 1, shift=shift)
+        part[mask > 0] = np.fmax(part, np.float32(probability))[mask > 0]
+    return OccupancyGrid(cells, grid.resolution_m, grid.origin_xy)
 
 
 def _grown(grid: OccupancyGrid, points_xy: Points) -> OccupancyGrid:

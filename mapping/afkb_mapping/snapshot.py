@@ -25,7 +25,7 @@ from afkb_mapping.doorway_merger import SeenDoorway
 from afkb_mapping.doorways_united import united
 from afkb_mapping.edges import edges_of
 from afkb_mapping.entities import observed_entities, predicted_entities, supports_expected
-from afkb_mapping.occupancy import rasterise
+from afkb_mapping.occupancy import rasterised
 from afkb_mapping.places import Place
 from afkb_mapping.predicted_track import PredictedTrack
 from afkb_mapping.room_lookup import RoomLookup, room_id
@@ -161,10 +161,12 @@ def _with_things(grid: OccupancyGrid, entities: Sequence[Entity]) -> OccupancyGr
 
     With its probability, times its matching weight: dynamic things fill the grid weakly.
     """
-    for entity in entities:
-        if entity.polygon_xy is not None and _stands_in_the_way(entity):
-            grid = rasterise(grid, entity.polygon_xy, entity.existence * entity.matching_weight)
-    return grid
+    standing = [
+        (entity.polygon_xy, entity.existence * entity.matching_weight)
+        for entity in entities
+        if entity.polygon_xy is not None and _stands_in_the_way(entity)
+    ]
+    return rasterised(grid, standing)
 
 
 def _stands_in_the_way(entity: Entity) -> bool:

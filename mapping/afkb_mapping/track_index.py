@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +10,12 @@ from numpy.typing import NDArray
 from afkb_mapping.box_index import BoxIndex
 from afkb_mapping.grounding import BELOW_MARGIN_M
 from afkb_mapping.predicted_track import PredictedTrack
-from afkb_mapping.tracks import ObservedTrack
+from afkb_mapping.tracks import SURFACE_CELL_M, ObservedTrack
 
 Array = NDArray[np.float64]
+
+STANDS_REACH_M = 3 * SURFACE_CELL_M
+"""What carries a thing lies below it, within the cells that `support_of` allows."""
 
 
 class TrackIndex:
@@ -24,6 +27,15 @@ class TrackIndex:
         self._boxes: BoxIndex[ObservedTrack] = BoxIndex()
         self._floors: dict[str, ObservedTrack] = {}
         self._born = 0
+
+    @classmethod
+    def of(cls, tracks: Iterable[ObservedTrack]) -> TrackIndex:
+        """An index of tracks that have their places."""
+        index = cls()
+        for track in tracks:
+            index.add(track)
+            index.moved(track)
+        return index
 
     def __len__(self) -> int:
         return len(self._tracks)
@@ -70,6 +82,13 @@ class TrackIndex:
     def near(self, low_xy: Array, high_xy: Array) -> list[ObservedTrack]:
         """Tracks but the floor that may have a part in a box, m, in order of birth."""
         return sorted(self._boxes.near(low_xy, high_xy), key=lambda t: self._ranks[t.id])
+
+    def carriers(self, track: ObservedTrack) -> list[ObservedTrack]:
+        """Surfaces that may carry a track: those under it in order of birth, then the floor."""
+        points = track.footprint.points()
+        near = self.near(points.min(axis=0) - STANDS_REACH_M, points.max(axis=0) + STANDS_REACH_M)
+        surfaces = [t for t in near if t.is_surface]
+        return surfaces if self.floor is None else [*surfaces, self.floor]
 
 
 class PredictionIndex:
