@@ -28,7 +28,7 @@ from afkb_mapping.detour import room_to_room
 from afkb_mapping.doorway_judge import beside_wall, through_wall
 from afkb_mapping.doorway_merger import LIKELY, WIDTH_M
 from afkb_mapping.narrows import gaps_of_map
-from bench.detectors.data import data_folder
+from bench.detectors.data import NoData, data_folder
 
 Array = NDArray[np.float64]
 
@@ -66,9 +66,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def judged(truth: Path) -> dict[str, Any]:
     """Counts of doors that are drawn and found, and of claims and right ones, of one plan."""
-    plan = cv2.imread(str(truth.with_name(truth.name.replace(TRUTH, ".png"))), cv2.IMREAD_GRAYSCALE)
-    cut = cv2.imread(str(truth), cv2.IMREAD_GRAYSCALE)
-    assert plan is not None and cut is not None
+    plan, cut = read_plan(truth.with_name(truth.name.replace(TRUTH, ".png"))), read_plan(truth)
     free = plan >= FREE_FROM
     lines, lengths = _lines(free & (cut < LINE_BELOW))
     start = time.thread_time()
@@ -84,6 +82,14 @@ def judged(truth: Path) -> dict[str, Any]:
         "free_m2": float(free.sum()) * RESOLUTION_M**2,
         "seconds": seconds,
     }
+
+
+def read_plan(path: Path) -> NDArray[np.uint8]:
+    """(rows, cols) grey values of a plan. Raises `NoData` where it is no image."""
+    plan = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    if plan is None:
+        raise NoData(f"{path}: no image that can be read")
+    return np.asarray(plan, dtype=np.uint8)
 
 
 def doorways_in(free: NDArray[np.bool_]) -> Array:

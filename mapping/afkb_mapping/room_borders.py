@@ -22,8 +22,8 @@ def cut_at_doorways(
     for doorway in doorways:
         _draw(lines, doorway, labels, grid)
     cores = _largest_parts(np.where(lines, 0, labels))
-    filled = _spread(cores, (labels > 0) & ~lines)
-    return _spread(filled, labels > 0)
+    filled = spread(cores, (labels > 0) & ~lines)
+    return spread(filled, labels > 0)
 
 
 def _draw(
@@ -59,8 +59,8 @@ def _largest_parts(labels: Labels) -> Labels:
     return kept
 
 
-def _spread(labels: Labels, within: NDArray[np.bool_]) -> Labels:
-    """Labels grown step by step into the unlabelled cells of `within` that they touch."""
+def spread(labels: Labels, within: NDArray[np.bool_]) -> Labels:
+    """(rows, cols) labels grown step by step into the unlabelled cells of `within` they touch."""
     labels = np.pad(labels, 1)
     empty = np.pad(within, 1) & (labels == 0)
     while empty.any():

@@ -1,12 +1,13 @@
-"""Rooms of an occupancy grid: basins of free space that narrow passages part (Bormann 2016, §III).
+"""Rooms of an occupancy grid: faces between the lines of walls, joined where little parts them.
 
-The distance to the nearest obstacle is flooded from its peaks downwards. Where two basins meet, the
-passage is twice as wide as the field is high there; if it is as narrow as a doorway, and narrower
-than both sides, they are two rooms. For furnished homes, merging beats splitting.
+Free space without furniture is cut along every line that may bound a room: on which a wall would go
+on if it went on, across narrow places, and in doorways that views have shown. Faces that share more
+opening than wall are one again.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,20 +15,14 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from afkb.flow import OccupancyGrid
+from afkb_mapping.doorway_merger import SeenDoorway
 from afkb_mapping.doorways import DoorwayShape, find_doorways
 from afkb_mapping.free_space import Mask, free_space, seen_space
 from afkb_mapping.outlines import outline_of_cells
-from afkb_mapping.room_borders import cut_at_doorways
+from afkb_mapping.segmentation.faces import joined_faces
+from afkb_mapping.segmentation.merging import LEAST_ROOM_M2
 
 Labels = NDArray[np.int32]
-Box = tuple[int, int, int, int]
-
-WIDEST_DOOR_M = 2.4
-"""A wider passage joins: openings without a door, as between kitchen and dining room."""
-NARROWING = 0.75
-"""A passage wider than this part of the narrower side is no narrowing: it joins."""
-LEAST_ROOM_M2 = 2.5
-"""Less than this is a niche or a closet, and belongs to the room it opens to."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,21 +44,22 @@ class Segmentation:
     doorways: tuple[DoorwayShape, ...]
 
 
-def segment_rooms(grid: OccupancyGrid) -> Segmentation:
-    """The rooms of the grid, largest first, with the doorways between them."""
-    least_cells = LEAST_ROOM_M2 / grid.resolution_m**2
-    clearance = _clearance(free_space(grid), grid.resolution_m)
-    labels = _absorb_niches(_basins(clearance), clearance, least_cells)
+def segment_rooms(grid: OccupancyGrid, doorways: Sequence[SeenDoorway] = ()) -> Segmentation:
+    """The rooms of the grid, largest first, with the doorways between them.
+
+    `doorways`: that views have shown, each of which counts as a wall as far as it is likely.
+    """
+    free = free_space(grid)
+    clearance = _clearance(free, grid.resolution_m)
+    labels = joined_faces(free, clearance, grid, doorways)
     if not labels.any():
-        seen = seen_space(grid)
-        if seen.sum() < least_cells:
-            return Segmentation(labels, (), ())
-        labels, clearance = seen.astype(np.int32), _clearance(seen, grid.resolution_m)
+        labels = seen_space(grid).astype(np.int32)
+        if labels.sum() < LEAST_ROOM_M2 / grid.resolution_m**2:
+            return Segmentation(np.zeros_like(labels), (), ())
+        clearance = _clearance(labels > 0, grid.resolution_m)
     labels = _numbered(labels)
-    doorways = find_doorways(labels, clearance, grid)
-    labels = cut_at_doorways(labels, doorways, grid)
     rooms = tuple(_shape(labels, label, clearance, grid) for label in range(1, labels.max() + 1))
-    return Segmentation(labels, rooms, doorways)
+    return Segmentation(labels, rooms, find_doorways(labels, clearance, grid))
 
 
 def _clearance(free: Mask, resolution: float) -> NDArray[np.float32]:
@@ -71,53 +67,6 @@ def _clearance(free: Mask, resolution: float) -> NDArray[np.float32]:
     distance = ndimage.distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1] * resolution
     # To the obstacle's border, not its middle.
     return np.asarray(np.maximum(distance - resolution / 2, 0), dtype=np.float32)
-
-
-def _basins(clearance: NDArray[np.float32]) -> Labels:
-    from afkb_mapping.flood_kernel import flood
-
-    flat = np.flatnonzero(clearance > 0)
-    order = flat[np.argsort(-clearance.ravel()[flat], kind="stable")]
-    labels: Labels = flood(clearance, order.astype(np.int64), WIDEST_DOOR_M / 2, NARROWING)
-    return labels
-
-
-def _absorb_niches(labels: Labels, clearance: NDArray[np.float32], least_cells: float) -> Labels:
-    """Small basins given to the neighbour with the widest passage; without one, dropped."""
-    labels = np.pad(labels, 1)
-    width = np.pad(clearance, 1)
-    sizes = np.bincount(labels.ravel())
-    sizes[0] = 0
-    boxes = [(0, 0, 0, 0), *(_box(window) for window in ndimage.find_objects(labels))]
-    while (small := np.flatnonzero((sizes > 0) & (sizes < least_cells))).size:
-        label = int(small[np.argmin(sizes[small])])
-        top, left, bottom, right = boxes[label]
-        around = np.s_[top - 1 : bottom + 1, left - 1 : right + 1]
-        heir = _widest_neighbour(labels[around], label, width[around])
-        labels[around][labels[around] == label] = heir
-        if heir:
-            sizes[heir] += sizes[label]
-            boxes[heir] = _union(boxes[heir], boxes[label])
-        sizes[label] = 0
-    return labels[1:-1, 1:-1]
-
-
-def _box(window: tuple[slice, slice] | None) -> Box:
-    """Top, left, bottom, right (half-open) of a window; zeros for none."""
-    if window is None:
-        return (0, 0, 0, 0)
-    rows, cols = window
-    return (rows.start, cols.start, rows.stop, cols.stop)
-
-
-def _union(a: Box, b: Box) -> Box:
-    return (min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3]))
-
-
-def _widest_neighbour(labels: Labels, label: int, clearance: NDArray[np.float32]) -> int:
-    rim = ndimage.binary_dilation(labels == label, np.ones((3, 3)))
-    rim &= (labels != label) & (labels > 0)
-    return int(labels[rim][np.argmax(clearance[rim])]) if rim.any() else 0
 
 
 def _numbered(labels: Labels) -> Labels:

@@ -1,0 +1,81 @@
+"""Lines on which walls would go on, if they went on: where rooms may end though nothing stands.
+
+A wall that ends at an opening points along the border that people would draw there, be it a door
+or three metres wide (the lines of ROSE², Luperto et al. 2022, but for ends of walls only).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+Mask = NDArray[np.bool_]
+Array = NDArray[np.float64]
+
+STRAIGHT_M = 0.12
+"""An edge is straight where it bends by no more: two or three cells, as noise does."""
+WALL_M = 0.5
+"""A shorter straight edge is as likely the end of a wall as its face, and points nowhere."""
+LONGEST_M = 6.0
+"""No line is drawn further: nobody takes two walls for one across a hall."""
+CLEAR_CELLS = 2.5
+"""A line is clear of the wall it leaves once the next obstacle is this far,"""
+HIT_CELLS = 1.5
+"""and ends where one is this near: jambs of one doorway lie a cell or so off each other's line."""
+LEAVES_WITHIN_CELLS = 6
+"""A line that is not clear after so many cells runs along a wall."""
+
+
+def wall_lines(free: Mask, resolution_m: float) -> Mask:
+    """(rows, cols) free cells on the lines that carry straight edges of free space on."""
+    import cv2
+
+    padded = np.pad(free, 1)
+    distance, nearest = ndimage.distance_transform_edt(padded, return_indices=True)
+    drawn = np.zeros(padded.shape, dtype=np.uint8)
+    reach = np.arange(int(LONGEST_M / resolution_m))[:, None]
+    for corner, along in _ends_of_edges(padded, resolution_m):
+        cells = np.round(corner + reach * along).astype(int)
+        cells = cells[((cells >= 0) & (cells < padded.shape[::-1])).all(axis=1)]
+        end = _end(distance[cells[:, 1], cells[:, 0]])
+        if end is not None:
+            col, row = (int(n) for n in cells[end])
+            jamb = nearest[:, row, col]
+            start = (int(corner[0]), int(corner[1]))
+            # Four-connected, so that no face slips through a line diagonally.
+            cv2.line(drawn, start, (col, row), 1, lineType=cv2.LINE_4)
+            cv2.line(drawn, (col, row), (int(jamb[1]), int(jamb[0])), 1, lineType=cv2.LINE_4)
+    lines: Mask = (drawn[1:-1, 1:-1] > 0) & free
+    return lines
+
+
+def _ends_of_edges(padded: Mask, resolution_m: float) -> Iterator[tuple[Array, Array]]:
+    """Both ends (2,) column and row of each long straight edge, and the unit way on from there."""
+    import cv2
+
+    contours, _ = cv2.findContours(padded.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    for contour in contours:
+        corners = cv2.approxPolyDP(contour, STRAIGHT_M / resolution_m, True)
+        points = corners.reshape(-1, 2).astype(np.float64)
+        if len(points) < 3:
+            continue
+        for others in (np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)):
+            lengths = np.linalg.norm(points - others, axis=1)
+            for corner, other, length in zip(points, others, lengths, strict=True):
+                if length * resolution_m >= WALL_M:
+                    yield corner, (corner - other) / length
+
+
+def _end(distances: Array) -> int | None:
+    """Index at which a line meets the next obstacle, by the distances to any along it, in cells.
+
+    None where it does not lead through free space, or meets nothing.
+    """
+    away = np.flatnonzero(distances > CLEAR_CELLS)
+    if not len(away) or away[0] > LEAVES_WITHIN_CELLS:
+        return None
+    hit = np.flatnonzero(distances[away[0] :] <= HIT_CELLS)
+    return int(away[0] + hit[0]) if len(hit) else None
