@@ -21,6 +21,10 @@ DISTANCE_M2 = (0.35, 163.0)
 """Areas of the cores that are counted when the level is chosen."""
 CRITICAL_M = 1.6
 """A critical point is the narrowest place of the Voronoi graph within this of it."""
+WIDER = 1.2
+"""and so much narrower than the widest place within this."""
+NARROWEST_M = 0.4
+"""Narrower places are corners."""
 OPPOSITE = -0.5
 """Greatest cosine between the ways from a cell of the graph to the obstacles on either side: at
 less than 120 degrees the graph runs into a corner."""
@@ -65,10 +69,12 @@ def voronoi(free: Mask, resolution_m: float) -> Labels:
     distance, nearest = distance[1:-1, 1:-1], nearest[:, 1:-1, 1:-1] - 1
     graph, other = _voronoi_graph(free, nearest)
     radius = round(CRITICAL_M / resolution_m)
+    graph &= distance * resolution_m > NARROWEST_M / 2
     heights = np.where(graph, distance, np.inf)
-    around = ndimage.minimum_filter(heights, size=2 * radius + 1)
+    critical = graph & (heights <= ndimage.minimum_filter(heights, size=2 * radius + 1))
+    critical &= ndimage.maximum_filter(distance, size=2 * radius + 1) > WIDER * distance
     cut = free.astype(np.uint8)
-    for row, col in np.argwhere(graph & (heights <= around)).tolist():
+    for row, col in np.argwhere(critical).tolist():
         for to_row, to_col in (nearest[:, row, col].tolist(), other[:, row, col].tolist()):
             cv2.line(cut, (col, row), (to_col, to_row), 0, lineType=cv2.LINE_4)
     parts, _ = ndimage.label(cut > 0)

@@ -63,7 +63,7 @@ class MapContent:
 
 def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> TopologicalMap:
     """The `TopologicalMap` of a mapper's content."""
-    segmentation = segment_rooms(content.grid)
+    segmentation = segment_rooms(content.grid, content.doorways)
     lookup = RoomLookup(segmentation, content.grid)
     observed = observed_entities(content.tracks, content.network)
     known = {e.id for e in observed}

@@ -1,11 +1,13 @@
 """Rooms and doorways of occupancy grids."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from afkb.flow import OccupancyGrid
+from afkb_mapping.doorway_merger import SeenDoorway
 from afkb_mapping.rooms import segment_rooms
 
 RESOLUTION = 0.05
@@ -70,8 +72,38 @@ def test_furniture_does_not_part_a_room():
     assert found.rooms[0].area == pytest.approx(5.8 * 4.8, rel=0.03)
 
 
-def test_a_wide_opening_does_not_part_a_room():
-    _, found = segmented(two_rooms(door=(1.0, 4.0)))
+def test_an_opening_between_long_walls_parts_rooms_wide_as_it_is():
+    _, found = segmented(two_rooms(door=(1.0, 3.4)))
+    assert len(found.rooms) == 2
+    assert found.rooms[0].area == pytest.approx(4.9 * 4.8, rel=0.03)
+
+
+def test_stubs_of_wall_do_not_part_a_room():
+    _, found = segmented(two_rooms(door=(0.5, 4.6)))
+    assert len(found.rooms) == 1
+
+
+def test_a_wide_opening_parts_rooms_where_views_have_shown_a_doorway():
+    seen = SeenDoorway(5.05, 2.55, 0.0, 4.1, 0.9, 4, math.nan)
+    grid = OccupancyGrid(two_rooms(door=(0.5, 4.6)), RESOLUTION, (0.0, 0.0))
+    assert len(segment_rooms(grid, [seen]).rooms) == 2
+    doubtful = replace(seen, probability=0.1)
+    assert len(segment_rooms(grid, [doubtful]).rooms) == 1
+
+
+def test_a_corridor_that_opens_into_a_hall_is_a_room_of_its_own():
+    probability = np.full((120, 220), 0.9, np.float32)
+    fill(probability, 0.1, 0.1, 5, 5.9, 0.1)
+    fill(probability, 5, 2.4, 10.9, 3.6, 0.1)
+    _, found = segmented(probability)
+    assert [room.area for room in found.rooms] == pytest.approx([4.9 * 5.8, 5.9 * 1.2], rel=0.05)
+
+
+def test_furniture_along_the_walls_does_not_part_a_room():
+    probability = blank(8, 5)
+    fill(probability, 3.5, 0.1, 5.0, 0.7, 0.9)
+    fill(probability, 3.5, 4.4, 5.5, 4.9, 0.9)
+    _, found = segmented(probability)
     assert len(found.rooms) == 1
 
 

@@ -11,10 +11,10 @@ from scipy import ndimage
 from afkb.flow import OccupancyGrid
 from afkb_mapping.doorway_merger import SeenDoorway
 from afkb_mapping.doorways import DoorwayShape
-from afkb_mapping.room_borders import spread
 from afkb_mapping.segmentation.borders import borders
 from afkb_mapping.segmentation.merging import FaceGraph
 from afkb_mapping.segmentation.narrow_lines import lines_across, narrow_lines
+from afkb_mapping.segmentation.spreading import spread
 from afkb_mapping.segmentation.wall_lines import wall_lines
 
 Mask = NDArray[np.bool_]
