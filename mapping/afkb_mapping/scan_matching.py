@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from afkb_mapping.scan_surface import SurfacePoints
+from afkb_mapping.scan_surface import RANGE_SIGMA_M, SurfacePoints
 
 Array = NDArray[np.float64]
 
 NORMAL_WEIGHT_M = 0.2
 """Metres that a unit difference of normals counts for: keeps the two sides of a wall apart."""
+LEVELS_APART_M = 10.0
+"""Further than any match reaches: only points of one level correspond."""
 RADII_M = (0.6, 0.3, 0.15)
 """Correspondence radius, coarse to fine; the first must span what odometry errs between views."""
 STEPS_PER_RADIUS = 10
-RANGE_SIGMA_M = 0.02
-"""How far a beam's end strays from the mapped surface: range noise and cell averaging together."""
 EFFECTIVE_BEAMS = 40.0
 """Beams on one wall share their errors; a scan is worth at most this many independent ones."""
 ALONG_M = 0.4
@@ -62,7 +62,8 @@ class LocalMap:
 
 
 def _with_normals(surface: SurfacePoints) -> Array:
-    return np.column_stack([surface.points_xy, NORMAL_WEIGHT_M * surface.normals_xy])
+    normals, level = NORMAL_WEIGHT_M * surface.normals_xy, LEVELS_APART_M * surface.level
+    return np.column_stack([surface.points_xy, normals, level])
 
 
 def rotation(yaw: float) -> Array:
@@ -120,7 +121,7 @@ def _normal_equations(
     # Geman-McClure: what moved since, or was never mapped, lets go as the radius shrinks.
     scale = max(radius_m / 3, RANGE_SIGMA_M)
     weights = (scale**2 / (scale**2 + errors**2)) ** 2
-    weights *= min(1.0, EFFECTIVE_BEAMS / found.sum()) / RANGE_SIGMA_M**2
+    weights *= min(1.0, EFFECTIVE_BEAMS / found.sum()) / scan.sigma_m[found] ** 2
     return (J * weights[:, None]).T @ J, J.T @ (weights * errors)
 
 

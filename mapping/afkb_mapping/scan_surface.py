@@ -1,10 +1,11 @@
-"""Surface of a laser scan: its points with normals, and the map of such points that scans match.
+"""Surface of a laser scan: its points with normals.
 
 Everything is planar (seen from above), metres.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,8 @@ from afkb.flow import LaserScan
 
 Points = NDArray[np.float64]
 
+RANGE_SIGMA_M = 0.02
+"""How far a beam's end strays from the mapped surface: range noise and cell averaging together."""
 WINDOWS_M = (0.12, 0.4)
 """Half lengths of wall that a normal is fitted to: over the first, noise of 1 cm tilts it by a few
 degrees; the second is for points where a noisier laser (3 cm) shows no line over the first."""
@@ -31,28 +34,59 @@ ROUGHNESS_M = 0.03
 GRAZING = 0.05
 """Sine of the least angle between beam and surface; below it the "surface" is an edge's mixed
 ranges, strung out along the beam."""
-CELL_M = 0.05
-"""Cell within which the map averages points: about the beam spacing at 5 m, below a wall's depth"""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurfacePoints:
-    """`points_xy` (N, 2) m and `normals_xy` (N, 2), unit, facing the sensor."""
+    """What stands upright, seen from above.
+
+    - `points_xy` (N, 2) m and `normals_xy` (N, 2), unit, facing the sensor.
+    - `level` (N,) int: layer of height; points of different layers never match each other.
+    - `sigma_m` (N,): standard deviation of a point across its surface.
+    """
 
     points_xy: Points
     normals_xy: Points
+    level: NDArray[np.intp]
+    sigma_m: Points
+
+    @classmethod
+    def of_laser(cls, points_xy: Points, normals_xy: Points) -> SurfacePoints:
+        """What a laser met: all in one layer, as sure as lasers are."""
+        count = len(points_xy)
+        return cls(points_xy, normals_xy, np.zeros(count, np.intp), np.full(count, RANGE_SIGMA_M))
 
     def __len__(self) -> int:
         return len(self.points_xy)
 
+    def where(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> SurfacePoints:
+        """Some of the points."""
+        level, sigma_m = self.level[chosen], self.sigma_m[chosen]
+        return SurfacePoints(self.points_xy[chosen], self.normals_xy[chosen], level, sigma_m)
+
     def near(self, center_xy: Points, radius_m: float) -> SurfacePoints:
         """The part within a radius of a point, m."""
-        close = ((self.points_xy - center_xy) ** 2).sum(axis=1) < radius_m**2
-        return SurfacePoints(self.points_xy[close], self.normals_xy[close])
+        return self.where(((self.points_xy - center_xy) ** 2).sum(axis=1) < radius_m**2)
 
     def moved(self, R: Points, t: Points) -> SurfacePoints:
         """The same surface rotated by R (2, 2), then shifted by t (2,)."""
-        return SurfacePoints(self.points_xy @ R.T + t, self.normals_xy @ R.T)
+        points, normals = self.points_xy @ R.T + t, self.normals_xy @ R.T
+        return SurfacePoints(points, normals, self.level, self.sigma_m)
+
+
+def no_surface() -> SurfacePoints:
+    """No points at all."""
+    return SurfacePoints.of_laser(np.empty((0, 2)), np.empty((0, 2)))
+
+
+def joined(parts: Sequence[SurfacePoints]) -> SurfacePoints:
+    """All points of several surfaces in one frame."""
+    return SurfacePoints(
+        np.concatenate([p.points_xy for p in parts]),
+        np.concatenate([p.normals_xy for p in parts]),
+        np.concatenate([p.level for p in parts]),
+        np.concatenate([p.sigma_m for p in parts]),
+    )
 
 
 def surface_of(scan: LaserScan) -> SurfacePoints:
@@ -62,31 +96,44 @@ def surface_of(scan: LaserScan) -> SurfacePoints:
     the cost does not depend on the window.
     """
     points = scan.points_xy
+    level = np.zeros(len(points), np.intp)
+    return surface_of_rows(points, level, np.full(len(points), RANGE_SIGMA_M))
+
+
+def surface_of_rows(points: Points, level: NDArray[np.intp], sigma_m: Points) -> SurfacePoints:
+    """The same of points (N, 2) about the sensor that lie row by row, by `level`, each in order."""
     if len(points) < 3:
-        return SurfacePoints(np.empty((0, 2)), np.empty((0, 2)))
-    normals, straight = _fit_lines(points, *_windows(points, WINDOWS_M[0]))
+        return no_surface()
+    piece = pieces_of(points, np.diff(level) != 0)
+    normals, straight = _fit_lines(points, *_windows(points, piece, WINDOWS_M[0]))
     if not straight.all():
-        wide_normals, wide_straight = _fit_lines(points, *_windows(points, WINDOWS_M[1]))
+        wide_normals, wide_straight = _fit_lines(points, *_windows(points, piece, WINDOWS_M[1]))
         normals = np.where(straight[:, None], normals, wide_normals)
         straight |= wide_straight
     facing = -(normals * points).sum(axis=1) / np.linalg.norm(points, axis=1)
     normals *= np.where(facing < 0, -1.0, 1.0)[:, None]
     straight &= np.abs(facing) > GRAZING
-    return SurfacePoints(points[straight], normals[straight])
+    return SurfacePoints(points, normals, level, sigma_m).where(straight)
 
 
-def pieces_of(points: Points) -> NDArray[np.intp]:
-    """Number of the piece of surface that each point (N, 2), in beam order, belongs to, from 0."""
+def pieces_of(points: Points, apart: NDArray[np.bool_] | None = None) -> NDArray[np.intp]:
+    """Number of the piece of surface that each point (N, 2), in beam order, belongs to, from 0.
+
+    `apart` (N - 1,): neighbours that are known not to lie on one piece.
+    """
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     padded = np.concatenate([[np.inf], steps, [np.inf]])
     beside = np.minimum(padded[:-2], padded[2:])
     torn = (steps > GAP_M) & (steps > GAP_RATIO * beside)
+    if apart is not None:
+        torn |= apart
     return np.concatenate([[0], np.cumsum(torn)])
 
 
-def _windows(points: Points, half_m: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _windows(
+    points: Points, piece: NDArray[np.intp], half_m: float
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Half-open index ranges of the points that share each point's piece of surface."""
-    piece = pieces_of(points)
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     index = np.arange(len(points))
     first = np.minimum(np.searchsorted(arc, arc - half_m), index - WINDOW_BEAMS)
@@ -114,41 +161,3 @@ def _fit_lines(
     normals = np.column_stack([-np.sin(along), np.cos(along)])
     straight = (count >= 3) & (small < FLATNESS**2 * large) & (small < ROUGHNESS_M**2)
     return normals, straight
-
-
-class SurfaceMap:
-    """Surface points of all scans so far, averaged per cell and side; grows with what is seen."""
-
-    def __init__(self) -> None:
-        self._index: dict[tuple[int, int, int], int] = {}
-        self._sums = np.zeros((1024, 5))
-
-    def __len__(self) -> int:
-        return len(self._index)
-
-    def add(self, surface: SurfacePoints) -> None:
-        """Average in a scan's points, given in the map frame."""
-        points, normals = surface.points_xy, surface.normals_xy
-        rows = self._rows_of(points, normals)
-        values = np.column_stack([points, normals, np.ones(len(points))])
-        np.add.at(self._sums, rows, values)
-
-    def _rows_of(self, points: Points, normals: Points) -> NDArray[np.intp]:
-        """Row of each point's cell; both sides of a thin wall have rows of their own."""
-        cells = np.floor(points / CELL_M).astype(np.int64)
-        facing = np.round(np.arctan2(normals[:, 1], normals[:, 0]) / (np.pi / 2)).astype(int) % 4
-        index = self._index
-        keys = zip(cells[:, 0].tolist(), cells[:, 1].tolist(), facing.tolist(), strict=True)
-        rows = np.array([index.setdefault(key, len(index)) for key in keys], dtype=np.intp)
-        while len(index) > len(self._sums):
-            self._sums = np.concatenate([self._sums, np.zeros_like(self._sums)])
-        return rows
-
-    def near(self, center_xy: Points, radius_m: float) -> SurfacePoints:
-        """The map's points within a radius: what a scan taken there can see."""
-        sums = self._sums[: len(self._index)]
-        points = sums[:, :2] / sums[:, 4:]
-        close = ((points - center_xy) ** 2).sum(axis=1) < radius_m**2
-        normals = sums[close, 2:4]
-        length = np.linalg.norm(normals, axis=1, keepdims=True)
-        return SurfacePoints(points[close], normals / np.maximum(length, 1e-9))

@@ -1,4 +1,4 @@
-"""Rooms made of line segments, and the scans a laser takes in them."""
+"""Rooms made of line segments, and what a laser or a depth camera sees in them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from afkb.flow import LaserScan, View
+from afkb.flow import LaserScan, PinholeCamera, View
 from afkb_mapping.geometry import T_from_xy_yaw
 
 FLAT = np.array(
@@ -51,3 +51,23 @@ def view(walls, pose, odom, index=0, rng=None, noise_m=0.01, beams=360, range_ma
     T_base_laser = np.eye(4)
     T_base_laser[2, 3] = 0.25
     return View(index, float(index), T_from_xy_yaw(*odom), scan=scan, T_base_laser=T_base_laser)
+
+
+CAMERA = PinholeCamera(160, 120, 131.0, 131.0, 79.5, 59.5)
+CAMERA_HEIGHT = 1.2
+
+
+def depth_view(walls, pose, odom, index=0, rng=None):
+    """A view with a depth image of walls and floor, of a level camera, noisy with a generator."""
+    u, v = np.meshgrid(np.arange(CAMERA.width), np.arange(CAMERA.height))
+    right, down = (u - CAMERA.cx) / CAMERA.fx, (v - CAMERA.cy) / CAMERA.fy
+    bearings = pose[2] - np.arctan(right[0])
+    to_wall = ranges(walls, pose[0], pose[1], bearings, 8.0) * np.cos(np.arctan(right[0]))
+    to_floor = np.where(down > 0, CAMERA_HEIGHT / np.maximum(down, 1e-9), np.inf)
+    depth = np.minimum(to_wall[None], to_floor)
+    depth = np.where(depth < 8, depth, 0.0)
+    if rng is not None:
+        depth += (depth > 0) * rng.normal(size=depth.shape) * (0.0012 + 0.0019 * (depth - 0.4) ** 2)
+    T = np.array([[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, CAMERA_HEIGHT], [0, 0, 0, 1.0]])
+    T_odom_base = T_from_xy_yaw(*odom)
+    return View(index, float(index), T_odom_base, depth.astype(np.float32), CAMERA, T)

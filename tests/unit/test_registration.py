@@ -1,6 +1,7 @@
 """Placing views: odometry corrected by laser scans."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -15,12 +16,12 @@ PATH = [(1 + 0.3 * i, 2.5, 0.1 * i) for i in range(10)]
 PATH += [(3.7 + 0.4 * i, 3.95, 0.9 - 0.2 * i) for i in range(1, 9)]
 
 
-def drifting(path, rng):
-    """Odometry of a path whose steps err by a few percent and degrees, starting anywhere."""
+def drifting(path, rng, sigmas=(0.03, 0.03, 0.04)):
+    """Odometry of a path whose steps err by a few centimetres and degrees, starting anywhere."""
     odom = [T_from_xy_yaw(3, -2, 1.0)]
     for a, b in pairwise(path):
         step = np.linalg.inv(T_from_xy_yaw(*a)) @ T_from_xy_yaw(*b)
-        slip = T_from_xy_yaw(*rng.normal(0, [0.03, 0.03, 0.04]))
+        slip = T_from_xy_yaw(*rng.normal(0, sigmas))
         odom.append(odom[-1] @ step @ slip)
     return [(T[0, 3], T[1, 3], yaw_of(T)) for T in odom]
 
@@ -53,6 +54,42 @@ def test_drifting_odometry_is_corrected_to_centimetres():
     assert all(p.matched for p in placed)
     assert shift.max() < 0.03
     assert math.degrees(turn.max()) < 0.5
+
+
+def test_without_a_laser_what_stands_upright_in_depth_corrects_odometry():
+    rng = np.random.default_rng(1)
+    turns = [(2.5, 2.5, 0.5 * i) for i in range(13)] + [
+        (2.5 + 0.3 * i, 2.5, 6.3) for i in (1, 2, 3)
+    ]
+    odom = drifting(turns, rng, (0.01, 0.01, 0.03))
+    views = [
+        samples.depth_view(samples.FLAT, p, o, i, rng)
+        for i, (p, o) in enumerate(zip(turns, odom, strict=True))
+    ]
+    placed = place_all(views)
+    shift, turn = errors(placed, turns)
+    assert shift.max() < 0.05
+    assert math.degrees(turn.max()) < 1.5
+
+
+def test_given_camera_poses_are_kept():
+    rng = np.random.default_rng(2)
+    poses = [(2.5, 2.5, 0.0), (2.5, 2.5, 0.1)]
+    given = [(0.0, 0.0, 0.0), (0.05, 0.02, 0.1)]
+    registration = ScanRegistration(np.eye(4))
+    for index, (pose, claimed) in enumerate(zip(poses, given, strict=True)):
+        view = samples.depth_view(samples.FLAT, pose, claimed, index, rng)
+        placed = registration.place(replace(view, has_base=False))
+        assert np.array_equal(placed.T_map_base, T_from_xy_yaw(*claimed))
+
+
+def test_an_earlier_visit_is_matched_as_recalled():
+    rng = np.random.default_rng(3)
+    earlier = samples.view(samples.FLAT, (2, 2, 0.3), (0, 0, 0), 0, rng)
+    registration = ScanRegistration(np.eye(4))
+    registration.recall(replace(earlier, T_map_base=T_from_xy_yaw(2, 2, 0.3)))
+    placed = registration.place(samples.view(samples.FLAT, (2.1, 2, 0.3), (2.14, 2.03, 0.32)))
+    assert np.linalg.norm(placed.T_map_base[:2, 3] - [2.1, 2.0]) < 0.01
 
 
 def test_covers_a_slip_that_icp_alone_would_not_reach():
