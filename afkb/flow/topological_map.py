@@ -126,6 +126,8 @@ class Room:
     """A room: a point inside, area (m²), outline (N, 2), and a posterior over its purpose.
 
     `belief` sums to 1 and has `UnknownRoom` among its keys. `visited`: the robot stood in it.
+    `connected_to`: ids of rooms that one gets to from it directly, through a doorway or over the
+    open border of two parts of an open plan.
     """
 
     id: str
@@ -135,6 +137,7 @@ class Room:
     polygon_xy: NDArray[np.float64]
     belief: Mapping[str, float]
     visited: bool = True
+    connected_to: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

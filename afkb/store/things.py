@@ -144,6 +144,7 @@ def describe_room(scribe: Scribe, room: Room) -> None:
     scribe.say(node, "afn:y", float(room.y))
     scribe.say(node, "afn:area", float(room.area))
     scribe.say(node, "afn:visited", bool(room.visited))
+    scribe.say(node, "afn:connectedTo", *map(scribe.node, room.connected_to))
     scribe.belief(node, "room", "roomCategory", ranked(room.belief))
     if len(room.polygon_xy) > 1:
         scribe.geometry(node, polygon_wkt(room.polygon_xy))

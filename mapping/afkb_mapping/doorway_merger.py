@@ -108,7 +108,7 @@ class DoorwayMerger:
 
     def doorways(self, grid: OccupancyGrid, at_least: float = LIKELY) -> list[SeenDoorway]:
         """The likely ones, likeliest first; of those that share a jamb, the likeliest."""
-        judge = DoorwayJudge(self._upright, grid)
+        judge = self.judge(grid)
         found = list(self._of_scans(judge) if self._has_scans else self._of_map(judge, grid))
         edge = EDGE_M if self._has_scans else EDGE_OF_MAP_M
         kept: list[tuple[Array, SeenDoorway]] = []
@@ -116,6 +116,10 @@ class DoorwayMerger:
             if seen.probability >= at_least and all(are_apart(jambs, k, edge) for k, _ in kept):
                 kept.append((jambs, seen))
         return [seen for _, seen in kept]
+
+    def judge(self, grid: OccupancyGrid) -> DoorwayJudge:
+        """What holds a gap in the grid against all that views have shown to be tall or low."""
+        return DoorwayJudge(self._upright, grid)
 
     def _of_scans(self, judge: DoorwayJudge) -> Iterator[tuple[Array, SeenDoorway]]:
         """Gaps that single views have shown."""

@@ -54,6 +54,15 @@ def find_doorways(
     return tuple(d for d in doorways if d.width >= NARROWEST_M)
 
 
+def connected_rooms(labels: Labels, clearance: NDArray[np.float32]) -> tuple[tuple[int, int], ...]:
+    """Pairs of rooms, smaller label first, between which one can pass, doorway or none."""
+    return tuple(
+        pair
+        for pair, cells in _touching(labels)
+        if 2 * float(clearance[cells[:, 0], cells[:, 1]].max()) >= NARROWEST_M
+    )
+
+
 def _touching(labels: Labels) -> list[tuple[tuple[int, int], Cells]]:
     """Pairs of rooms (smaller label first) with the cells (N, 2) of the first at the second."""
     found = []

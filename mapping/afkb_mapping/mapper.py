@@ -80,7 +80,7 @@ class AffordanceMapper:
             places=self._places.places,
             ways=dict(self._places.ways),
             bounds=self._bounds.bounds(),
-            doorways=self._doorways.doorways(self._grid.grid()),
+            doorways=self._doorways,
             grid=self._grid.grid(),
             closures=self._settled_closures(),
             trajectory=self._trajectory,

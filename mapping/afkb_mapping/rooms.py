@@ -16,11 +16,13 @@ from scipy import ndimage
 
 from afkb.flow import OccupancyGrid
 from afkb_mapping.doorway_merger import SeenDoorway
-from afkb_mapping.doorways import DoorwayShape, find_doorways
+from afkb_mapping.doorways import DoorwayShape, connected_rooms, find_doorways
 from afkb_mapping.free_space import Mask, free_space, seen_space
 from afkb_mapping.outlines import outline_of_cells
-from afkb_mapping.segmentation.faces import joined_faces
+from afkb_mapping.segmentation.faces import border_lines, joined_faces
 from afkb_mapping.segmentation.merging import LEAST_ROOM_M2
+from afkb_mapping.segmentation.open_plan import Belief, Purpose, divided
+from afkb_mapping.segmentation.wall_lines import Line
 
 Labels = NDArray[np.int32]
 
@@ -37,11 +39,17 @@ class RoomShape:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Segmentation:
-    """Rooms and doorways of a grid; `labels` (rows, cols) int32 as the grid, 0 = no room."""
+    """Rooms and doorways of a grid; `labels` (rows, cols) int32 as the grid, 0 = no room.
+
+    `doorways`: wherever two rooms meet, doors or openings as wide as a hall; `connected`: pairs of
+    labels between which one can pass; `lines`: on which a room may end, by what stands.
+    """
 
     labels: Labels
     rooms: tuple[RoomShape, ...]
     doorways: tuple[DoorwayShape, ...]
+    connected: tuple[tuple[int, int], ...] = ()
+    lines: tuple[Line, ...] = ()
 
 
 def segment_rooms(grid: OccupancyGrid, doorways: Sequence[SeenDoorway] = ()) -> Segmentation:
@@ -51,15 +59,34 @@ def segment_rooms(grid: OccupancyGrid, doorways: Sequence[SeenDoorway] = ()) -> 
     """
     free = free_space(grid)
     clearance = _clearance(free, grid.resolution_m)
-    labels = joined_faces(free, clearance, grid, doorways)
+    lines = border_lines(free, clearance, grid)
+    labels = joined_faces(free, clearance, grid, lines, doorways)
     if not labels.any():
-        labels = seen_space(grid).astype(np.int32)
+        labels, lines = seen_space(grid).astype(np.int32), []
         if labels.sum() < LEAST_ROOM_M2 / grid.resolution_m**2:
             return Segmentation(np.zeros_like(labels), (), ())
-        clearance = _clearance(labels > 0, grid.resolution_m)
-    labels = _numbered(labels)
+    return _described(labels, lines, grid)
+
+
+def divide_by_purpose(
+    segmentation: Segmentation, grid: OccupancyGrid, purpose: Purpose, prior: Belief
+) -> Segmentation:
+    """The segmentation with open plans divided where what is in their parts tells of two purposes.
+
+    `purpose`: posterior of a part (rows, cols) of the grid; `prior`: of any room.
+    """
+    lines = segmentation.lines
+    labels = divided(segmentation.labels, lines, purpose, prior, grid.resolution_m)
+    if labels.max() == segmentation.labels.max():
+        return segmentation
+    return _described(labels, lines, grid)
+
+
+def _described(labels: Labels, lines: Sequence[Line], grid: OccupancyGrid) -> Segmentation:
+    labels, clearance = _numbered(labels), _clearance(labels > 0, grid.resolution_m)
     rooms = tuple(_shape(labels, label, clearance, grid) for label in range(1, labels.max() + 1))
-    return Segmentation(labels, rooms, find_doorways(labels, clearance, grid))
+    doorways = find_doorways(labels, clearance, grid)
+    return Segmentation(labels, rooms, doorways, connected_rooms(labels, clearance), tuple(lines))
 
 
 def _clearance(free: Mask, resolution: float) -> NDArray[np.float32]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,27 +13,25 @@ from afkb.flow import (
     Closure,
     Doorway,
     Entity,
-    NodeKind,
     OccupancyGrid,
     RobotPlace,
     Room,
     TopologicalMap,
 )
 from afkb.inference import Network
-from afkb_mapping.doorway_merger import SeenDoorway
-from afkb_mapping.doorways_united import united
+from afkb_mapping.doorway_merger import DoorwayMerger, SeenDoorway
 from afkb_mapping.edges import edges_of
 from afkb_mapping.entities import observed_entities, predicted_entities, supports_expected
 from afkb_mapping.occupancy import rasterised
 from afkb_mapping.places import Place
 from afkb_mapping.predicted_track import PredictedTrack
+from afkb_mapping.room_evidence import RoomEvidence
+from afkb_mapping.room_graph import connections, doorways_of
 from afkb_mapping.room_lookup import RoomLookup, room_id
-from afkb_mapping.rooms import Segmentation, segment_rooms
+from afkb_mapping.rooms import Segmentation, divide_by_purpose, segment_rooms
 from afkb_mapping.tracks import ObservedTrack
 from afkb_mapping.way_lengths import way_lengths
 
-SEEN_RELIABLY = ("SupportAbility",)
-"""Features whose absence from a visited room says something: their detectors overlook little."""
 STEP_M = 0.05
 """What is lower than this, a carpet or a sill, a robot drives over."""
 
@@ -53,7 +50,7 @@ class MapContent:
     places: Sequence[Place]
     ways: Mapping[tuple[str, str], float]
     bounds: Sequence[Bound]
-    doorways: Sequence[SeenDoorway]
+    doorways: DoorwayMerger
     grid: OccupancyGrid
     closures: Sequence[Closure]
     trajectory: Sequence[tuple[float, NDArray[np.float64]]]
@@ -63,11 +60,12 @@ class MapContent:
 
 def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> TopologicalMap:
     """The `TopologicalMap` of a mapper's content."""
-    segmentation = segment_rooms(content.grid, content.doorways)
-    lookup = RoomLookup(segmentation, content.grid)
+    seen_doorways = content.doorways.doorways(content.grid)
     observed = observed_entities(content.tracks, content.network)
     known = {e.id for e in observed}
     entities = [*observed, *predicted_entities(content.predictions, content.network, known)]
+    segmentation, evidence = _parted(content, entities, seen_doorways)
+    lookup = RoomLookup(segmentation, content.grid)
     supports = supports_expected(content.predictions, content.tracks)
     entities = [
         replace(
@@ -79,14 +77,16 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
     ]
     places = [_robot_place(p, lookup) for p in content.places]
     bounds = [_bound_in_room(b, lookup) for b in content.bounds]
+    judge = content.doorways.judge(content.grid)
+    doorways = doorways_of(segmentation, seen_doorways, judge, lookup.room_at)
     seen = {p.id: [i for i in p.seen if i in known] for p in content.places}
     ways = list(way_lengths(content.grid, places, content.ways))
     return TopologicalMap(
         places=tuple(places),
         entities=tuple(entities),
         bounds=tuple(bounds),
-        doorways=tuple(_doorways(segmentation, content.doorways, lookup)),
-        rooms=tuple(_rooms(segmentation, lookup, entities, places, content)),
+        doorways=doorways,
+        rooms=tuple(_rooms(segmentation, lookup, evidence, places, doorways, content)),
         edges=tuple(edges_of(places, ways, entities, seen, bounds)),
         grid=_with_things(content.grid, entities),
         T_map_source=T_map_source,
@@ -95,6 +95,17 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
         notes=tuple(_notes(observed)),
         counts=dict(content.counts),
     )
+
+
+def _parted(
+    content: MapContent, entities: Sequence[Entity], doorways: Sequence[SeenDoorway]
+) -> tuple[Segmentation, RoomEvidence]:
+    """Rooms by what stands and by doorways, then by what their parts are for."""
+    grid = content.grid
+    rooms = segment_rooms(grid, doorways)
+    evidence = RoomEvidence(content.network, entities, content.looked_from, rooms.labels, grid)
+    prior = content.network.room_posterior({})
+    return divide_by_purpose(rooms, grid, evidence.purpose, prior), evidence
 
 
 def _notes(observed: Sequence[Entity]) -> Iterator[str]:
@@ -116,44 +127,23 @@ def _bound_in_room(bound: Bound, lookup: RoomLookup) -> Bound:
     return replace(bound, room=lookup.room_at(*middle))
 
 
-def _doorways(
-    segmentation: Segmentation, seen: Sequence[SeenDoorway], lookup: RoomLookup
-) -> list[Doorway]:
-    return [
-        Doorway(f"doorway-{i}", d.x, d.y, d.yaw, d.width, d.rooms)
-        for i, d in enumerate(united(segmentation.doorways, seen, lookup.room_at), start=1)
-    ]
-
-
 def _rooms(
     segmentation: Segmentation,
     lookup: RoomLookup,
-    entities: Sequence[Entity],
+    evidence: RoomEvidence,
     places: Sequence[RobotPlace],
+    doorways: Sequence[Doorway],
     content: MapContent,
-) -> list[Room]:
+) -> Iterator[Room]:
     """Rooms with the posterior that the affordances in them give (paper §II.F)."""
+    beside = connections(segmentation, doorways)
     visited = {p.room for p in places}
     visited |= {lookup.nearest_room(T[0, 3], T[1, 3]) for _, T in content.trajectory}
-    looked_at = {lookup.nearest_room(*xy) for xy in content.looked_from}
-    rooms = []
     for shape in segmentation.rooms:
         id_ = room_id(shape.label)
-        counts: Counter[str] = Counter()
-        if id_ in looked_at:
-            counts.update(dict.fromkeys(content.network.evidence_looked_for(SEEN_RELIABLY), 0))
-        for entity in entities:
-            if entity.room == id_ and entity.kind is NodeKind.OBSERVED:
-                counts.update(_evidence_of(entity, content.network))
-        belief = content.network.room_posterior(counts)
-        x, y = shape.inside_xy
-        rooms.append(Room(id_, x, y, shape.area, shape.polygon_xy, belief, id_ in visited))
-    return rooms
-
-
-def _evidence_of(entity: Entity, network: Network) -> tuple[str, ...]:
-    known = network.known(entity.affordances)
-    return network.evidence_of(known, entity.size_xyz, entity.top_m)
+        belief = evidence.posterior(segmentation.labels == shape.label)
+        at = (id_, *shape.inside_xy, shape.area, shape.polygon_xy)
+        yield Room(*at, belief, id_ in visited, beside.get(id_, ()))
 
 
 def _with_things(grid: OccupancyGrid, entities: Sequence[Entity]) -> OccupancyGrid:

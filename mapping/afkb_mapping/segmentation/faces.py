@@ -15,7 +15,7 @@ from afkb_mapping.segmentation.borders import borders
 from afkb_mapping.segmentation.merging import FaceGraph
 from afkb_mapping.segmentation.narrow_lines import lines_across, narrow_lines
 from afkb_mapping.segmentation.spreading import spread
-from afkb_mapping.segmentation.wall_lines import wall_lines
+from afkb_mapping.segmentation.wall_lines import Line, drawn, wall_lines
 
 Mask = NDArray[np.bool_]
 Labels = NDArray[np.int32]
@@ -23,16 +23,25 @@ Array = NDArray[np.float64]
 Clearance = NDArray[np.float32]
 
 
+def border_lines(free: Mask, clearance: Clearance, grid: OccupancyGrid) -> list[Line]:
+    """Every line of free space that may bound a room, by what stands."""
+    return [*wall_lines(free, grid.resolution_m), *narrow_lines(clearance, grid)]
+
+
 def joined_faces(
-    free: Mask, clearance: Clearance, grid: OccupancyGrid, doorways: Sequence[SeenDoorway]
+    free: Mask,
+    clearance: Clearance,
+    grid: OccupancyGrid,
+    lines: Sequence[Line],
+    doorways: Sequence[SeenDoorway],
 ) -> Labels:
     """(rows, cols) label of the room of each free cell, 0 elsewhere; labels are not consecutive.
 
     A doorway that views have shown counts as a wall as far as it is likely.
     """
     closed = _closed(doorways, grid)
-    lines = wall_lines(free, grid.resolution_m) | narrow_lines(clearance, grid) | (closed > 0)
-    parts, _ = ndimage.label(free & ~lines)
+    cut = drawn(lines, free.shape) | (closed > 0)
+    parts, _ = ndimage.label(free & ~cut)
     faces = spread(parts.astype(np.int32), free)
     areas: Array = np.bincount(faces.ravel()).astype(np.float64) * grid.resolution_m**2
     areas[0] = 0.0
@@ -45,9 +54,9 @@ def joined_faces(
 
 
 def _closed(doorways: Sequence[SeenDoorway], grid: OccupancyGrid) -> NDArray[np.float32]:
-    """(rows, cols) probability that a doorway's line runs through a cell or beside it."""
+    """(rows, cols) probability that a doorway's line runs through a cell."""
     closed = np.zeros(grid.probability.shape, dtype=np.float32)
     for seen in sorted(doorways, key=lambda d: d.probability):
         shape = DoorwayShape(seen.x, seen.y, seen.yaw, seen.width, (1, 2))
-        closed[lines_across([shape], grid)] = seen.probability
+        closed[drawn(lines_across([shape], grid), closed.shape)] = seen.probability
     return closed

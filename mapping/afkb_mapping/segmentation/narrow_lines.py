@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from afkb.flow import OccupancyGrid
 from afkb_mapping.doorways import DoorwayShape, find_doorways
+from afkb_mapping.segmentation.wall_lines import Line
 
-Mask = NDArray[np.bool_]
 Clearance = NDArray[np.float32]
 
 WIDEST_M = 6.0
@@ -19,8 +19,8 @@ NARROWING = 0.9
 """A place is narrow where it is narrower than this part of what it leads to, on both sides."""
 
 
-def narrow_lines(clearance: Clearance, grid: OccupancyGrid) -> Mask:
-    """(rows, cols) cells on lines between the jambs of narrow places.
+def narrow_lines(clearance: Clearance, grid: OccupancyGrid) -> list[Line]:
+    """Lines between the jambs of narrow places.
 
     `clearance` (rows, cols): distance to the nearest obstacle, m.
     """
@@ -32,17 +32,13 @@ def narrow_lines(clearance: Clearance, grid: OccupancyGrid) -> Mask:
     return lines_across(find_doorways(basins, clearance, grid), grid)
 
 
-def lines_across(doorways: Sequence[DoorwayShape], grid: OccupancyGrid) -> Mask:
-    """(rows, cols) cells between the jambs of doorways, and the cells that the jambs are in."""
-    import cv2
-
-    drawn = np.zeros(grid.probability.shape, dtype=np.uint8)
+def lines_across(doorways: Sequence[DoorwayShape], grid: OccupancyGrid) -> list[Line]:
+    """From jamb to jamb of each doorway, and a cell into either."""
+    lines = []
     for doorway in doorways:
         across = np.array([-np.sin(doorway.yaw), np.cos(doorway.yaw)])
         half = (doorway.width / 2 + grid.resolution_m) * across
         middle = np.array([doorway.x, doorway.y]) - grid.origin_xy
-        ends = np.floor((middle + np.array([half, -half])) / grid.resolution_m).astype(int)
-        start, end = ends.tolist()
-        cv2.line(drawn, start, end, 1, lineType=cv2.LINE_4)
-    lines: Mask = drawn > 0
+        ends = np.floor((middle + np.array([half, -half])) / grid.resolution_m)
+        lines.append(ends.astype(np.intp))
     return lines

@@ -6,7 +6,8 @@ or three metres wide (the lines of ROSE², Luperto et al. 2022, but for ends of 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import itertools
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ from scipy import ndimage
 
 Mask = NDArray[np.bool_]
 Array = NDArray[np.float64]
+Line = NDArray[np.intp]
+"""(N, 2) column and row of its corners."""
 
 STRAIGHT_M = 0.12
 """An edge is straight where it bends by no more: two or three cells, as noise does."""
@@ -29,13 +32,11 @@ LEAVES_WITHIN_CELLS = 6
 """A line that is not clear after so many cells runs along a wall."""
 
 
-def wall_lines(free: Mask, resolution_m: float) -> Mask:
-    """(rows, cols) free cells on the lines that carry straight edges of free space on."""
-    import cv2
-
+def wall_lines(free: Mask, resolution_m: float) -> list[Line]:
+    """Lines that carry straight edges of free space on, to the jamb or the wall they meet."""
     padded = np.pad(free, 1)
     distance, nearest = ndimage.distance_transform_edt(padded, return_indices=True)
-    drawn = np.zeros(padded.shape, dtype=np.uint8)
+    lines = []
     reach = np.arange(int(LONGEST_M / resolution_m))[:, None]
     for corner, along in _ends_of_edges(padded, resolution_m):
         cells = np.round(corner + reach * along).astype(int)
@@ -44,12 +45,21 @@ def wall_lines(free: Mask, resolution_m: float) -> Mask:
         if end is not None:
             col, row = (int(n) for n in cells[end])
             jamb = nearest[:, row, col]
-            start = (int(corner[0]), int(corner[1]))
-            # Four-connected, so that no face slips through a line diagonally.
-            cv2.line(drawn, start, (col, row), 1, lineType=cv2.LINE_4)
-            cv2.line(drawn, (col, row), (int(jamb[1]), int(jamb[0])), 1, lineType=cv2.LINE_4)
-    lines: Mask = (drawn[1:-1, 1:-1] > 0) & free
+            corners = [corner.astype(int), np.array([col, row]), jamb[::-1]]
+            lines.append(np.array(corners, dtype=np.intp) - 1)
     return lines
+
+
+def drawn(lines: Iterable[Line], shape: tuple[int, ...]) -> Mask:
+    """(rows, cols) cells on lines; no label slips through one diagonally."""
+    import cv2
+
+    cells = np.zeros(shape, dtype=np.uint8)
+    for line in lines:
+        for start, end in itertools.pairwise(line.tolist()):
+            cv2.line(cells, start, end, 1, lineType=cv2.LINE_4)
+    mask: Mask = cells > 0
+    return mask
 
 
 def _ends_of_edges(padded: Mask, resolution_m: float) -> Iterator[tuple[Array, Array]]:
