@@ -14,6 +14,7 @@ from afkb_mapping.same_thing import around
 from afkb_mapping.standing import FOOT_HIDDEN_M, STANDS_WITHIN_M, support_of
 from afkb_mapping.track_index import TrackIndex
 from afkb_mapping.tracks import ObservedTrack
+from afkb_mapping.visits.persistence import hazard_of
 
 EXISTS_FROM = 0.5
 CONVINCING = 0.4
@@ -118,6 +119,19 @@ def _observed(
         polygon_xy=outline.polygon_xy,
         evidence=tuple(track.evidence),
     )
+
+
+def hazard_of_track(track: ObservedTrack, network: Network) -> float:
+    """Rate, 1/s, at which such things are moved: by the movability of what it may be."""
+    if not track.footprint:
+        return 0.0
+    outline, top = track.footprint.outline(), track.top.value
+    bottom = top - SURFACE_THICKNESS_M if track.is_surface else min(track.bottom.value, top)
+    affordances = {n: p for n, p in track.affordances.items() if p >= FAINT}
+    belief = network.category_posterior(
+        network.known(affordances), (*outline.size_xy, top - bottom), top, track.extent_known
+    )
+    return hazard_of(network.movability(belief)[1])
 
 
 def predicted_entities(

@@ -13,10 +13,11 @@ from afkb.inference import Network
 from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
 from afkb_mapping.doorway_merger import DoorwayMerger, passage_width
-from afkb_mapping.entities import is_kept
+from afkb_mapping.entities import hazard_of_track, is_kept
 from afkb_mapping.grid_input import insert_view
 from afkb_mapping.grounding import fits, ground, joined, same_prediction
 from afkb_mapping.ids import Ids
+from afkb_mapping.looks import age, eye_of, look_at, look_for
 from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
 from afkb_mapping.predicted_track import PredictedTrack
@@ -24,17 +25,9 @@ from afkb_mapping.snapshot import MapContent, snapshot
 from afkb_mapping.standing import support_of
 from afkb_mapping.track_index import PredictionIndex
 from afkb_mapping.tracks import ObservedTrack
-from afkb_mapping.update_rules import against, update_rule
-from afkb_mapping.visibility import Look, Sight
-
-EMPTY_LIKELIHOOD_RATIO = 0.03
-"""P(seen through | still there) over P(seen through | gone): most of a thing's surface, in clear
-view, is seen through by mistake only where the pose is off or the thing is see-through."""
-OVERLOOKED_LIKELIHOOD_RATIO = 0.55
-"""P(not detected | there) over P(not detected | a false cue): detectors find about half of the
-things they have in clear view, and repeat few of their errors from elsewhere."""
-LOOKED_AT_SHARE = 0.7
-GONE_BELOW = 0.2
+from afkb_mapping.update_rules import update_rule
+from afkb_mapping.visibility import Sight
+from afkb_mapping.visits.persistence import AGED_EVERY_S, GONE_BELOW, HOUR_S
 
 
 class AffordanceMapper:
@@ -56,6 +49,7 @@ class AffordanceMapper:
         self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
         self._looked_from: list[NDArray[np.float64]] = []
         self._refuted = 0
+        self._aged_at: float | None = None
 
     def add(
         self, view: View, detections: Sequence[Detection], hypotheses: Sequence[Hypothesis]
@@ -96,9 +90,23 @@ class AffordanceMapper:
     def _enter(self, view: View) -> None:
         assert view.T_map_base is not None
         insert_view(self._grid, view)
+        self._age(view.stamp)
         self._trajectory.append((view.stamp, view.T_map_base))
         if view.depth_m is not None:
             self._looked_from.append(view.T_map_base[:2, 3])
+
+    def _age(self, stamp: float) -> None:
+        """Let the time since the last views pass over all things: days, between two visits."""
+        seconds = 0.0 if self._aged_at is None else stamp - self._aged_at
+        if self._aged_at is None or seconds >= AGED_EVERY_S:
+            self._aged_at = stamp
+        if seconds < AGED_EVERY_S:
+            return
+        tracks = self._association.tracks
+        if seconds >= HOUR_S:  # What was gone already leaves its place to what is put there.
+            for track in [t for t in tracks if not t.is_floor and t.existence < GONE_BELOW]:
+                tracks.remove(track)
+        age(tracks, seconds, lambda track: hazard_of_track(track, self._network))
 
     def _confirm(self, observed: Sequence[ObservedTrack | None], view: View) -> None:
         """What is seen for sure gives a prediction its place; what is doubtful confirms nothing."""
@@ -130,10 +138,12 @@ class AffordanceMapper:
 
         At its first sight mostly a part of a thing shows.
         """
-        tracks = self._association.tracks
+        tracks = {t.id: t for t in self._association.tracks}
         settled = []
         for closure, expected_xy in self._closures:
-            track = tracks[self._association.id_now(closure.entity)]
+            track = tracks.get(self._association.id_now(closure.entity))
+            if track is None:  # It was taken away, days ago.
+                continue
             off = np.hypot(*(expected_xy - track.footprint.outline().center_xy))
             settled.append(replace(closure, entity=track.id, displacement_m=float(off)))
         return settled
@@ -178,10 +188,10 @@ class AffordanceMapper:
             old = next((p for p in like if same_prediction(p, prediction)), None)
             if old is None:
                 prediction.id = self._new_id("predicted")
-                prediction.viewpoints.is_new(_eye(view), prediction.center_xy)
+                prediction.viewpoints.is_new(eye_of(view), prediction.center_xy)
                 self._predictions.put(prediction)
                 continue
-            if old.viewpoints.is_new(_eye(view), old.center_xy):
+            if old.viewpoints.is_new(eye_of(view), old.center_xy):
                 old.probability = self._rule(old.probability, prediction.probability)
                 old.observations += 1
             joined(old, prediction)
@@ -191,21 +201,13 @@ class AffordanceMapper:
     def _look_for_missing(self, view: View, observed: Sequence[ObservedTrack | None]) -> None:
         """What is seen through counts against; the paper has no such term."""
         seen = {t.id for t in observed if t is not None}
-        sight, eye = Sight(view), _eye(view)
+        sight, eye = Sight(view), eye_of(view)
         in_reach = sight.reach()
         for track in self._association.tracks.near(*in_reach):
-            if track.id in seen:
-                continue
-            body = track.footprint.points()
-            found = sight.look(body, track.look_height_m)
-            if _is_empty(found) and track.empty_from.is_new(eye, body[0]):
-                track.existence = against(track.existence, EMPTY_LIKELIHOOD_RATIO)
-            elif _is_overlooked(track, found, eye) and track.missed_from.is_new(eye, body[0]):
-                track.existence = against(track.existence, OVERLOOKED_LIKELIHOOD_RATIO)
+            if track.id not in seen:
+                look_at(track, sight, eye)
         for prediction in self._predictions.near(*in_reach):
-            empty = _is_empty(sight.look(prediction.sample_points(), prediction.top_range_m[1]))
-            if empty and prediction.empty_from.is_new(eye, prediction.center_xy):
-                prediction.probability = against(prediction.probability, EMPTY_LIKELIHOOD_RATIO)
+            look_for(prediction, sight, eye)
             if prediction.probability < GONE_BELOW:
                 self._refute(prediction)
 
@@ -251,22 +253,3 @@ class AffordanceMapper:
         for detection in detections:
             if detection.segment_xy is not None:
                 self._bounds.add(detection, place.id)
-
-
-def _eye(view: View) -> NDArray[np.float64]:
-    eye: NDArray[np.float64] = (
-        view.T_map_camera if view.depth_m is not None else view.T_map_laser
-    )[:2, 3]
-    return eye
-
-
-def _is_empty(found: Look) -> bool:
-    return found.in_view >= LOOKED_AT_SHARE and found.empty >= LOOKED_AT_SHARE
-
-
-def _is_overlooked(track: ObservedTrack, found: Look, eye: NDArray[np.float64]) -> bool:
-    """Whether a thing is in clear view, as near as it was ever seen from, and not detected."""
-    if track.is_surface or found.in_view < 1.0 or found.hit < LOOKED_AT_SHARE:
-        return False
-    nearest = np.linalg.norm(track.footprint.points() - eye, axis=1).min()
-    return bool(nearest <= track.farthest_m)

@@ -144,8 +144,13 @@ class ObservedTrack:
 
     def _believe(self, strength: float) -> None:
         """Existence after a sighting: a faint one of what is known already says nothing against."""
-        first = len(self.viewpoints.seen_from) == 1
+        first = not self.observations
         self.existence = strength if first else log_odds(self.existence, max(strength, 0.5))
+
+    def forget_looks(self) -> None:
+        """Let looks from where it was looked at before be evidence again: time has passed."""
+        self.viewpoints, self.empty_from = Viewpoints(), Viewpoints()
+        self.missed_from = Viewpoints()
 
     def absorb(self, other: ObservedTrack) -> None:
         """Take over another track that turned out to be the same thing."""
