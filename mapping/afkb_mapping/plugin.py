@@ -38,14 +38,16 @@ def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
 
 @hookimpl
 def afkb_commands(cli: typer.Typer, knowledge_base: AfNet) -> None:
-    """Add `map`, `demo`, `detect`, `locate` and `route`."""
+    """Add `map`, `demo`, `detect`, `locate`, `route` and `diff`."""
     from afkb_mapping.commands import demo, map_
     from afkb_mapping.detect_command import detect
     from afkb_mapping.localisation.locate_command import locate
     from afkb_mapping.routes.route_command import route
+    from afkb_mapping.visits.diff_command import diff
 
     cli.command(name="map")(map_)
     cli.command()(demo)
     cli.command()(detect)
     cli.command()(locate)
     cli.command()(route)
+    cli.command()(diff)

@@ -102,6 +102,10 @@ class Memory:
         last = len(self._visits) - 1
         return Memory(self._visits[:last], (p for p in self._passed if p.visit < last))
 
+    def without_visits(self, first: int) -> Memory:
+        """What was remembered at the visits after the first so many."""
+        return Memory(self._visits, (p for p in self._passed if p.visit >= first))
+
     def of_last_visit(self) -> Recollection:
         """What was remembered since."""
         last = len(self._visits) - 1
