@@ -27,7 +27,11 @@ from bench.homes import WELL_SEEN_PIXELS
 Truth = Mapping[str, Any]
 
 BESIDE_M = 0.08
-"""A node is of a thing if its middle lies in the thing's box, or this near."""
+"""A node is of the smallest thing in whose box its middle lies, seen from above or this near,"""
+LEVEL_M = 0.03
+"""and as high or this near: a lamp's foot is no further above the top that it stands on."""
+FLAT_M = 0.03
+"""Nodes no higher than this are tops of furniture, whatever small thing stands at their middle."""
 MOVED_M = 0.10
 """Truth has things fall and settle by less."""
 SAYINGS = ("moved", "vanished", "unchanged", "unknown")
@@ -110,76 +114,93 @@ def _judged(told: Mapping[str, Any], before: _Visit, after: _Visit) -> dict[str,
     """What a difference says of what has changed, and says to have changed and hasn't."""
     lost = {kind: told[kind] for kind in SAYINGS[1:]}
     lost["moved"] = [{**node, **node["from"]} for node in told["moved"]]
-    changes, things = changed(before, after), before.things()
+    was, came = _Changes(before, after, before), _Changes(after, before, before)
     said: dict[str, Counter[str]] = {"furniture": Counter(), "small": Counter()}
-    for name in changes:
-        thing = things[name]
-        if thing["most_pixels"] < WELL_SEEN_PIXELS:
-            continue
-        kind = "small" if "#" in name else "furniture"
-        said[kind][_said_of(thing, lost, before.T_map_world)] += 1
-    unmoved = [t for n, t in things.items() if n not in changes]
+    for thing in was.well_seen():
+        said[_kind(thing)][_said_of(thing, lost, was)] += 1
     gone = [*lost["moved"], *lost["vanished"]]
     come = [*told["moved"], *told["appeared"]]
-    T = before.T_map_world
-    moved_there = _changed_things(after, before)
     return {
         **{kind: dict(counts) for kind, counts in said.items()},
-        "invented": sum(
-            _is_in(unmoved, n, T) and not _is_of_changed(n, changes, things, T) for n in gone
-        ),
-        "invented to have come": sum(
-            _is_in(unmoved, n, T) and not _is_in(moved_there, n, T) for n in come
-        ),
+        "invented to have gone": sum(map(was.is_of_unmoved, gone)),
+        "invented to have come": sum(map(came.is_of_unmoved, come)),
         "told gone": len(gone),
         "told come": len(come),
     }
 
 
-def _changed_things(visit: _Visit, other: _Visit) -> list[Truth]:
-    return [visit.things()[name] for name in changed(visit, other)]
+class _Changes:
+    """What is elsewhere or nowhere at another visit; nodes are in the frame of a third's map."""
+
+    def __init__(self, visit: _Visit, other: _Visit, frame: _Visit) -> None:
+        self._all = sorted(visit.things().values(), key=_volume)
+        self._names = changed(visit, other)
+        self._T_world_map = np.linalg.inv(frame.T_map_world)
+
+    def well_seen(self) -> list[Truth]:
+        """Those of which there is something to tell."""
+        changes = (t for t in self._all if t["name"] in self._names)
+        return [t for t in changes if t["most_pixels"] >= WELL_SEEN_PIXELS]
+
+    def is_of(self, thing: Truth, node: Truth) -> bool:
+        """Whether a node is of this thing."""
+        return self.owner(node) == thing["name"]
+
+    def is_of_unmoved(self, node: Truth) -> bool:
+        """Whether a node is of a thing that has not changed."""
+        owner = self.owner(node)
+        return owner is not None and owner not in self._names
+
+    def owner(self, node: Truth) -> str | None:
+        """Name of the thing that a node is of; None where there was none at this visit."""
+        flat = node["size"][2] <= FLAT_M
+        return next(
+            (
+                t["name"]
+                for t in self._all
+                if self._is_in(t, node) and not (flat and _kind(t) == "small")
+            ),
+            None,
+        )
+
+    def _is_in(self, thing: Truth, node: Truth) -> bool:
+        at = self._T_world_map @ [node["x"], node["y"], node["z"], 1.0]
+        slack = np.array([BESIDE_M, BESIDE_M, LEVEL_M])
+        low, high = np.array(thing["min"]) - slack, np.array(thing["max"]) + slack
+        return bool(((low <= at[:3]) & (at[:3] <= high)).all())
 
 
-def _is_of_changed(
-    node: Truth, changes: Mapping[str, str], things: Mapping[str, Truth], T: NDArray[np.float64]
-) -> bool:
-    return _is_in([things[name] for name in changes], node, T)
+def _volume(thing: Truth) -> float:
+    return float(np.prod(np.array(thing["max"]) - thing["min"]))
 
 
-def _said_of(thing: Truth, lost: Mapping[str, Sequence[Truth]], T: NDArray[np.float64]) -> str:
+def _kind(thing: Truth) -> str:
+    return "small" if "#" in thing["name"] else "furniture"
+
+
+def _said_of(thing: Truth, lost: Mapping[str, Sequence[Truth]], was: _Changes) -> str:
     for saying in SAYINGS:
-        if any(_is_in([thing], node, T) for node in lost[saying]):
+        if any(was.is_of(thing, node) for node in lost[saying]):
             return saying
     return "not mapped"
 
 
-def _is_in(things: Sequence[Truth], node: Truth, T_map_world: NDArray[np.float64]) -> bool:
-    """Whether a node's middle, map frame, lies in the box of one of some things."""
-    at = np.linalg.inv(T_map_world) @ [node["x"], node["y"], node["z"], 1.0]
-    return any(
-        all(t["min"][i] - BESIDE_M <= at[i] <= t["max"][i] + BESIDE_M for i in range(3))
-        for t in things
-    )
-
-
 def _still_stated(updated: Path, before: _Visit, after: _Visit) -> dict[str, int]:
-    """Of well-seen things that have changed: how many the updated map states at either place."""
+    """Of well-seen things that have changed: how many the updated map states at either place.
+
+    At an old place counts what is there no more; something else may have been put there.
+    """
     objects = json.loads((updated / "map.json").read_text())
     nodes = [n for room in objects["rooms"] for n in room["objects"]] + objects["elsewhere"]
     seen = [n for n in nodes if n["kind"] == "ObservedEntity"]
-    T = before.T_map_world
-    old = [t for t in _changed_things(before, after) if t["most_pixels"] >= WELL_SEEN_PIXELS]
-    new = [t for t in _changed_things(after, before) if t["most_pixels"] >= WELL_SEEN_PIXELS]
+    was, came = _Changes(before, after, before), _Changes(after, before, before)
+    left = [n for n in seen if came.owner(n) is None]
     return {
-        "old places": len(old),
-        "stated still": sum(_states(seen, t, T) for t in old),
-        "new places": len(new),
-        "stated now": sum(_states(seen, t, T) for t in new),
+        "old places": len(was.well_seen()),
+        "stated still": sum(any(was.is_of(t, n) for n in left) for t in was.well_seen()),
+        "new places": len(came.well_seen()),
+        "stated now": sum(any(came.is_of(t, n) for n in seen) for t in came.well_seen()),
     }
-
-
-def _states(nodes: Sequence[Truth], thing: Truth, T: NDArray[np.float64]) -> bool:
-    return any(_is_in([thing], node, T) for node in nodes)
 
 
 def _model(name: str) -> str:
@@ -200,7 +221,7 @@ def table(result: dict[str, Any]) -> Iterator[str]:
             yield f"{f'{name}: {kind}':44} {''.join(f'{n:6d}' for n in counts)}"
         r = result[name]
         yield (
-            f"  of {r['told gone']} told to have gone {r['invented']} have not; "
+            f"  of {r['told gone']} told to have gone {r['invented to have gone']} have not; "
             f"of {r['told come']} told to have come {r['invented to have come']}"
         )
     r = result["after update"]
