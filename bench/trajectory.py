@@ -70,16 +70,29 @@ def absolute_errors(stamps: np.ndarray, poses: np.ndarray, truth: dict) -> np.nd
 
 
 def relation_errors(stamps: np.ndarray, poses: np.ndarray, relations: np.ndarray) -> np.ndarray:
-    """(N, 2) translation (m) and rotation (degrees) error of each relation between two views."""
+    """(N, 2) translation (m) and rotation (degrees) error of each relation between two views.
+
+    Where several of the relations' times fall on one view (logs round their stamps to 10 ms), it
+    isn't known which of them is its: these are left out.
+    """
     offset = _clock_offset(stamps, np.unique(relations[:, :2]))
+    view_at = _views_at(stamps + offset, np.unique(relations[:, :2]))
     errors = []
     for relation in relations:
-        ends = [int(np.argmin(np.abs(stamps + offset - t))) for t in relation[:2]]
-        if np.abs(stamps[ends] + offset - relation[:2]).max() > SAME_MOMENT_S:
+        if not all(t in view_at for t in relation[:2]):
             continue
+        ends = [view_at[t] for t in relation[:2]]
         measured = np.linalg.inv(poses[ends[0]]) @ poses[ends[1]]
         errors.append(_difference(T_from_xy_yaw(*relation[[2, 3, 7]]), measured))
     return np.array(errors)
+
+
+def _views_at(stamps: np.ndarray, times: np.ndarray) -> dict[float, int]:
+    """The view of each time that has one to itself."""
+    nearest = np.abs(stamps[None] - times[:, None]).argmin(axis=1)
+    same = np.abs(stamps[nearest] - times) <= SAME_MOMENT_S
+    claims = np.bincount(nearest[same], minlength=len(stamps))
+    return {t: int(k) for t, k in zip(times[same], nearest[same], strict=True) if claims[k] == 1}
 
 
 def _clock_offset(stamps: np.ndarray, times: np.ndarray) -> float:

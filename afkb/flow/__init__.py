@@ -6,6 +6,7 @@ source → `View` → detectors → `Detection` → filtrations and network → 
 
 from afkb.flow.detection import Detection, OrientedBox, Primitive
 from afkb.flow.hypothesis import Hypothesis, Relation
+from afkb.flow.loops import LoopKind, LoopProposal
 from afkb.flow.sensing import LaserScan, PinholeCamera, SkippedFrame, View
 from afkb.flow.topological_map import (
     Bound,
@@ -31,6 +32,8 @@ __all__ = [
     "Entity",
     "Hypothesis",
     "LaserScan",
+    "LoopKind",
+    "LoopProposal",
     "NodeKind",
     "OccupancyGrid",
     "OrientedBox",

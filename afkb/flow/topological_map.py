@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
+
+from afkb.flow.loops import LoopProposal
 
 
 class NodeKind(StrEnum):
@@ -161,7 +164,8 @@ class Edge:
 class Closure:
     """A predicted node that was then seen: the paper's loop-closing event.
 
-    `displacement_m`: from where it was predicted to where it is; `place`: from where it was seen.
+    `displacement_m`: from where it was predicted to where it is; `place`: from where it was seen;
+    `predicted_stamp`: when it was predicted first, s.
     """
 
     entity: str
@@ -170,6 +174,7 @@ class Closure:
     displacement_m: float
     place: str
     stamp: float
+    predicted_stamp: float = math.nan
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -192,8 +197,9 @@ class TopologicalMap:
 
     - `T_map_source` (4, 4): from the source's pose frame to the map frame at the first view.
     - `trajectory` (N, 17): stamp (s), then T_map_base (4x4) row by row, one row a view.
-    - `closures`: loop-closing events; `notes`: what had to be assumed; `counts`: of the run's
-      bookkeeping (births, merges, refuted predictions).
+    - `closures`: predictions that came true; `loops`: places that were, or may have been, seen
+      again, rejected ones with their reason; `notes`: what had to be assumed; `counts`: of the
+      run's bookkeeping (births, merges, refuted predictions).
     """
 
     places: tuple[RobotPlace, ...]
@@ -206,5 +212,6 @@ class TopologicalMap:
     T_map_source: NDArray[np.float64]
     trajectory: NDArray[np.float64]
     closures: tuple[Closure, ...] = ()
+    loops: tuple[LoopProposal, ...] = ()
     notes: tuple[str, ...] = ()
     counts: Mapping[str, int] = field(default_factory=dict)

@@ -49,6 +49,9 @@ def scene_triples(
         things.describe_edge(scribe, edge)
     for number, closure in enumerate(topological_map.closures, start=1):
         things.describe_closure(scribe, number, closure)
+    accepted = (p for p in topological_map.loops if p.accepted)
+    for number, loop in enumerate(accepted, start=1):
+        things.describe_correction(scribe, number, loop)
     return scribe.triples
 
 

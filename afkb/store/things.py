@@ -5,7 +5,18 @@ from __future__ import annotations
 import numpy as np
 from pyoxigraph import NamedNode
 
-from afkb.flow import Bound, Closure, Doorway, Edge, EdgeKind, Entity, NodeKind, RobotPlace, Room
+from afkb.flow import (
+    Bound,
+    Closure,
+    Doorway,
+    Edge,
+    EdgeKind,
+    Entity,
+    LoopProposal,
+    NodeKind,
+    RobotPlace,
+    Room,
+)
 from afkb.store.scribe import Scribe, polygon_wkt, ranked
 from afkb.store.vocabulary import term
 
@@ -176,3 +187,15 @@ def describe_closure(scribe: Scribe, number: int, closure: Closure) -> None:
     scribe.say(node, "afn:displacement", float(closure.displacement_m))
     scribe.say(node, "afn:seenFrom", scribe.node(closure.place))
     scribe.say(node, "afn:lastSeen", float(closure.stamp))
+
+
+def describe_correction(scribe: Scribe, number: int, loop: LoopProposal) -> None:
+    """A place that was seen again, and by how much that corrected the robot's way."""
+    node = scribe.node(f"loop-{number}")
+    scribe.say(node, "rdf:type", term("afn:LoopCorrection"))
+    scribe.say(node, "afn:recognisedBy", loop.kind.value)
+    scribe.say(node, "afn:correction", float(loop.corrected_m))
+    scribe.say(node, "afn:correctionAngle", float(loop.corrected_rad))
+    scribe.say(node, "afn:seenFrom", scribe.node(loop.place))
+    scribe.say(node, "afn:earlierPlace", scribe.node(loop.earlier_place))
+    scribe.say(node, "afn:lastSeen", float(loop.stamp))

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from importlib import import_module
 from typing import Any, Protocol, cast
 
-PARTS = ("locate", "diff", "growth", "floorplans", "trajectory", "vacuum")
+PARTS = ("locate", "diff", "growth", "floorplans", "trajectory", "vacuum", "loops", "relations")
 
 
 class Part(Protocol):

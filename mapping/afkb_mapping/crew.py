@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from afkb.errors import BadFrame, PluginError
 from afkb.flow import Detection, Hypothesis, TopologicalMap, View
+from afkb.inference import Network, network_of
 from afkb.plugins.host import PluginHost
 from afkb.plugins.protocols import Mapper, Predictor
 from afkb_mapping.localisation.bands import BandBuilder, HeightBands
@@ -37,9 +38,10 @@ class Crew:
         stages: Stages,
         memory: Memory,
         recollection: Recollection,
+        network: Network,
     ) -> None:
-        self.memory = memory
-        self._perception, self._predictors, self._stages = perception, predictors, stages
+        self.memory, self.stages, self.network = memory, stages, network
+        self._perception, self._predictors = perception, predictors
         self._new_mapper, self._recollection = new_mapper, recollection
         self._mapper, self._bands = new_mapper(), BandBuilder()
         self._replay(memory.views)
@@ -62,6 +64,7 @@ class Crew:
             stages,
             memory,
             recollection,
+            network_of(host.knowledge_base),
         )
 
     @property
@@ -79,7 +82,7 @@ class Crew:
         elif self.memory.is_worth_keeping(view):
             remembered = self._recollection.of(view) or self._perceived(view).thinned()
             self._map(remembered)
-            with self._stages.timed("remember"):
+            with self.stages.timed("remember"):
                 self.memory.keep(remembered)
         else:
             self.memory.pass_by(view)
@@ -102,14 +105,14 @@ class Crew:
         self._replay(self.memory.settled_views)
 
     def _replay(self, views: Iterable[RememberedView]) -> None:
-        with self._stages.timed("replay"):
+        with self.stages.timed("replay"):
             for remembered in views:
                 self._map(remembered)
 
     def _map(self, seen: RememberedView) -> None:
-        with self._stages.timed("map"), blamed("mapper", type(self._mapper).__name__):
+        with self.stages.timed("map"), blamed("mapper", type(self._mapper).__name__):
             self._mapper.add(seen.view, seen.detections, seen.hypotheses)
-        with self._stages.timed("bands"):
+        with self.stages.timed("bands"):
             self._bands.add(seen.view)
 
     def _perceived(self, view: View) -> RememberedView:
@@ -123,7 +126,7 @@ class Crew:
         hypotheses: list[Hypothesis] = []
         for predictor in self._predictors:
             name = predictor.name
-            with self._stages.timed(f"predict {name}"), blamed("predictor", name):
+            with self.stages.timed(f"predict {name}"), blamed("predictor", name):
                 hypotheses += predictor.predict(detections)
         return hypotheses
 

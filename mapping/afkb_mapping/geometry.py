@@ -44,6 +44,12 @@ def transform_xy(T_a_b: NDArray[np.float64], points_xy: NDArray[np.float64]) -> 
     return moved
 
 
+def inverse(T_a_b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """T_b_a of a rigid transform (4, 4)."""
+    T_b_a: NDArray[np.float64] = np.linalg.inv(T_a_b).astype(np.float64)
+    return T_b_a
+
+
 def yaw_of(T: NDArray[np.float64]) -> float:
     """Heading of a frame's x axis about z, rad."""
     return math.atan2(T[1, 0], T[0, 0])

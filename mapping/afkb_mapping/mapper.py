@@ -126,6 +126,7 @@ class AffordanceMapper:
             displacement_m=0.0,
             place=current.id if current else "",
             stamp=view.stamp,
+            predicted_stamp=prediction.first_seen,
         )
         self._closures.append((closure, prediction.center_xy))
         track.predicted_first = track.predicted_first or prediction.kind

@@ -16,6 +16,8 @@ from afkb.store import check_out, write_map
 from afkb_mapping.crew import Crew
 from afkb_mapping.interruption import Interruption
 from afkb_mapping.localisation.bands import STATE_FILE
+from afkb_mapping.loops.closing import close_loops
+from afkb_mapping.loops.naming import with_loops
 from afkb_mapping.memory.storing import MEMORY_FILE, to_bytes
 from afkb_mapping.memory.visit import Visit
 from afkb_mapping.placed_views import skipped
@@ -135,10 +137,22 @@ class _Way:
 
 
 def _finished(crew: Crew, visit: Visit, way: _Way) -> TopologicalMap:
-    found = crew.finish(visit.T_map_source)
+    found = _closed(crew, visit, crew.finish(visit.T_map_source))
     nothing = NO_DEPTH if not way.with_depth else None if found.entities else NOTHING_SEEN
     notes = (n for n in (*visit.notes, nothing) if n)
     return replace(found, notes=(*found.notes, *notes))
+
+
+def _closed(crew: Crew, visit: Visit, found: TopologicalMap) -> TopologicalMap:
+    """The map with its loops closed: built anew, where these correct the robot's way."""
+    if not crew.works_from_memory:
+        return found
+    with crew.stages.timed("close loops"):
+        closed = close_loops(crew.memory.views, crew.network, found.closures)
+    if closed.moved:
+        crew.settle(closed.poses)
+        found = crew.finish(visit.T_map_source)
+    return with_loops(found, closed)
 
 
 def _state(found: TopologicalMap, crew: Crew) -> dict[str, bytes]:

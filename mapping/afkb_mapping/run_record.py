@@ -14,11 +14,19 @@ from importlib.metadata import version
 from pathlib import Path
 
 from afkb import __version__
-from afkb.flow import SkippedFrame, TopologicalMap
+from afkb.flow import LoopProposal, SkippedFrame, TopologicalMap
 from afkb_mapping.memory.visit import Visit
 from afkb_mapping.selection import FrameRange
 
-RECORDED_PACKAGES = ("numpy", "numba", "open3d-cpu", "opencv-python-headless", "pgmpy", "rosbags")
+RECORDED_PACKAGES = (
+    "gtsam",
+    "numpy",
+    "numba",
+    "open3d-cpu",
+    "opencv-python-headless",
+    "pgmpy",
+    "rosbags",
+)
 MAX_LISTED_SKIPS = 20
 
 
@@ -110,11 +118,30 @@ def run_record(
         },
         "interrupted_by": signal.Signals(interrupted).name if interrupted else None,
         "counts": dict(topological_map.counts),
+        "loops": [_loop(p) for p in topological_map.loops],
         "notes": list(topological_map.notes),
         "frames_per_second": round(frames_per_second, 2),
         "peak_memory_mb": round(_peak_memory_mb(), 1),
         "seconds": {k: round(v, 3) for k, v in stages.seconds.items()},
     }
+
+
+def _loop(proposal: LoopProposal) -> dict[str, object]:
+    """A place seen again, or not: what was proposed, whether it was accepted, and why."""
+    told: dict[str, object] = {
+        "by": proposal.kind.value,
+        "view": proposal.view,
+        "earlier_view": proposal.earlier_view,
+        "place": proposal.place,
+        "earlier_place": proposal.earlier_place,
+        "weight": round(proposal.weight, 2),
+        "accepted": proposal.accepted,
+        "reason": proposal.reason,
+    }
+    if proposal.accepted:
+        told["corrected_m"] = round(proposal.corrected_m, 4)
+        told["corrected_rad"] = round(proposal.corrected_rad, 4)
+    return told
 
 
 def _version_of(package: str) -> str | None:

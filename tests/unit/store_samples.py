@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from afkb.flow import (
@@ -11,6 +13,8 @@ from afkb.flow import (
     Edge,
     EdgeKind,
     Entity,
+    LoopKind,
+    LoopProposal,
     NodeKind,
     OccupancyGrid,
     RobotPlace,
@@ -116,6 +120,12 @@ def sample_grid() -> OccupancyGrid:
     return OccupancyGrid(probability, 0.1, (-1.0, -0.5))
 
 
+def sample_loop(accepted: bool) -> LoopProposal:
+    kind, why = LoopKind.CONSTELLATION, "borne out" if accepted else "odometry rules it out"
+    found = LoopProposal(kind, 40, 0, 9.25, 1.5, 3.2, accepted, why, 0.48, 0.13)
+    return replace(found, place="p2", earlier_place="p1")
+
+
 def sample_map() -> TopologicalMap:
     return TopologicalMap(
         places=(RobotPlace("p1", 0, 0, 0, 1.5, 0, "room1"), RobotPlace("p2", 1, 1, 1.57, 9.25, 40)),
@@ -137,6 +147,7 @@ def sample_map() -> TopologicalMap:
         T_map_source=np.eye(4),
         trajectory=np.array([pose_row(0, 0, 0), pose_row(5, 0.5, 0.4), pose_row(9, 1, 1)]),
         closures=(Closure("n1", NodeKind.DUAL, 0.7, 0.12, "p2", 9.25),),
+        loops=(sample_loop(True), sample_loop(False)),
         notes=("n10: its top returns almost no depth; its extent is unknown",),
         counts={"frames": 41, "skipped_frames": 1},
     )

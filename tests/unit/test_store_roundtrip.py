@@ -323,3 +323,10 @@ def test_predicted_kinds_keep_their_class(tmp_path: Path) -> None:
     node = next(n for n in nodes_json(load(folder)) if n["id"] == "n1")
     assert (node["kind"], node["existence"]) == ("DualPrediction", 0.7)
     assert math.isclose(node["yaw"], 0.1)
+
+
+def test_loops_that_corrected_the_way_are_told_and_others_not(folder: Path) -> None:
+    stored = load(folder)
+    (loop,) = stored.instances("LoopCorrection")
+    assert stored.number(loop, "afn:correction") == 0.48
+    assert stored.name(loop, "afn:earlierPlace") == "p1"
