@@ -11,7 +11,18 @@ from collections.abc import Iterable
 from importlib import import_module
 from typing import Any, Protocol, cast
 
-PARTS = ("locate", "diff", "growth", "floorplans", "trajectory", "vacuum", "loops", "relations")
+PARTS = (
+    "locate",
+    "diff",
+    "growth",
+    "floorplans",
+    "trajectory",
+    "vacuum",
+    "loops",
+    "relations",
+    "lightness",
+    "paper",
+)
 
 
 class Part(Protocol):

@@ -28,14 +28,14 @@ def demo_results(topological_map: TopologicalMap) -> list[Row]:
     return [
         Row("rooms visited", "4", str(len(visited))),
         Row("place nodes", "6", str(len(topological_map.places))),
-        Row("transient nodes per place", "about 3", f"{_transient(topological_map):.1f}"),
+        Row("transient nodes per place", "about 3", f"{transient_per_place(topological_map):.1f}"),
         Row("hidden support predicted, then confirmed", "kitchen table", hidden or "none"),
         Row("loop error, m", "about 0", _loop_error(duals)),
         Row("room categories", "4/4 right", ", ".join(sorted(best))),
     ]
 
 
-def _transient(topological_map: TopologicalMap) -> float:
+def transient_per_place(topological_map: TopologicalMap) -> float:
     """Things that may move, seen from a place, on average over the places."""
     dynamic = {e.id for e in topological_map.entities if e.movability == "Dynamic"}
     links = [e for e in topological_map.edges if e.kind is EdgeKind.OBSTACLE]
