@@ -19,6 +19,7 @@ from afkb.flow import Detection, OccupancyGrid, View
 from afkb.inference import Network
 from afkb_mapping.frame_report import described
 from afkb_mapping.geometry import T_from_xy_yaw, transform_xy
+from afkb_mapping.panorama import panorama_of
 from afkb_mapping.routes.route_map import Thing
 
 Array = NDArray[np.float64]
@@ -28,6 +29,8 @@ SIGMA_M = 0.1
 REACH_M, STEP_M = 0.6, 0.05
 REACH_RAD, STEP_RAD = math.radians(15), math.radians(1.5)
 MOST_BEAMS = 240
+TRUSTED_M = 5.0
+"""Depth further away is wrong by more than a cell."""
 BESIDE_M = 0.1
 """What is so near to a thing's outline is the thing."""
 
@@ -90,15 +93,29 @@ def beam_weights(ends_xy: Array, detections: Sequence[Detection], network: Netwo
     return weights
 
 
-def best_pose(view: View, field: Field, weights: Array) -> tuple[float, float, float]:
+def ends_of(view: View, sense: str) -> Array:
+    """(N, 2) m: what a placed view meets by `laser`, or nearest in each direction of `depth`."""
+    if sense == "laser":
+        assert view.scan is not None
+        return transform_xy(view.T_map_laser, view.scan.points_xy)
+    panorama = panorama_of(view)
+    if panorama is None:
+        return np.zeros((0, 2))
+    ranges = panorama.obstacle_m
+    return panorama.ends_xy(ranges)[ranges < TRUSTED_M]
+
+
+def best_pose(
+    view: View, ends_xy: Array, field: Field, weights: Array
+) -> tuple[float, float, float]:
     """How far the best pose near a view's true one is off: x, y (m, map frame) and yaw (rad).
 
-    `weights` (N,): of the scan's returned points.
+    `ends_xy` (N, 2): what it meets, m, map frame; `weights` (N,) of these.
     """
-    assert view.scan is not None and view.T_map_base is not None
+    assert view.T_map_base is not None
     T = view.T_map_base
     every = max(1, len(weights) // MOST_BEAMS)
-    ends = transform_xy(view.T_map_laser, view.scan.points_xy)[::every] - T[:2, 3]
+    ends = ends_xy[::every] - T[:2, 3]
     w = weights[::every] / weights[::every].sum()
     shifts = np.arange(-REACH_M, REACH_M + STEP_M / 2, STEP_M)
     best, found = -1.0, (0.0, 0.0, 0.0)

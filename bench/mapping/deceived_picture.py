@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import OccupancyGrid, View
-from afkb_mapping.geometry import T_from_xy_yaw, transform_xy
+from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_mapping.routes.route_map import Thing
 
 Array = NDArray[np.float64]
@@ -26,10 +26,11 @@ def picture(
     occupied: NDArray[np.bool_],
     things: list[Thing],
     view: View,
+    ends_xy: Array,
     poses: dict[str, tuple[float, float, float]],
 ) -> str:
-    """The map's cells, its dynamic things, and the view's scan where each match has it."""
-    assert view.scan is not None and view.T_map_base is not None
+    """The map's cells, its dynamic things, and what the view meets (N, 2), m, by each match."""
+    assert view.T_map_base is not None
     cells = grid.origin_xy + (np.argwhere(occupied)[:, ::-1] + 0.5) * grid.resolution_m
     low, high = cells.min(axis=0) - MARGIN_M, cells.max(axis=0) + MARGIN_M
     width, height = (high - low) * PIXELS_PER_M
@@ -37,11 +38,10 @@ def picture(
     for thing in things:
         corners = " ".join(f"{x:.1f},{y:.1f}" for x, y in _pixels(thing.polygon_xy, low, high))
         parts.append(f'<polygon points="{corners}" fill="#f5c84255" stroke="#c89000"/>')
-    ends = transform_xy(view.T_map_laser, view.scan.points_xy)
     at = view.T_map_base[:2, 3]
     for number, (name, (dx, dy, turn)) in enumerate(poses.items()):
         R = T_from_xy_yaw(0.0, 0.0, turn)[:2, :2]
-        parts.append(_dots((ends - at) @ R.T + at + (dx, dy), low, high, COLOURS[name], 0.02))
+        parts.append(_dots((ends_xy - at) @ R.T + at + (dx, dy), low, high, COLOURS[name], 0.02))
         off = f"{SAID[name]}: {np.hypot(dx, dy):.2f} m and {np.degrees(abs(turn)):.1f}° off"
         where = f'x="8" y="{18 + 18 * number}" fill="{COLOURS[name]}" style="{STYLE}"'
         parts.append(f"<text {where}>{off}</text>")

@@ -60,8 +60,10 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
         if not views:
             raise NoData(f"{folder}: remembers no views; map it again")
         rooms = len(load(folder).instances("Room"))
+        # The long tour first: memory is told at most so far.
+        again = _again(views, args.views)
         flats = _flats(views, args.flats, Path(scratch) / "flats") | {"rooms_each": rooms}
-        return {"flats": flats, "again": _again(views, args.views)}
+        return {"flats": flats, "again": again}
 
 
 def _flats(views: list[RememberedView], copies: int, out: Path) -> dict[str, Any]:

@@ -3,7 +3,7 @@
     python -m bench.mapping paper [--first HOME --later HOME] [--pictures FOLDER]
 
 Figures of the simulated home of Fig. 2: place nodes, transient nodes per waypoint, loop error. Then
-a later visit, after what moves was moved or has gone: each of its scans is matched, from near its
+a later visit, after what moves was moved or has gone: each of its views is matched, from near its
 true pose, to the map of the first visit, once with all cells and beams alike and once weighted by
 movability. Without `--first` and `--later` (homes with `bag/` and `truth.json`) both visits are of
 the simulated home, the later one rearranged.
@@ -29,8 +29,7 @@ from afkb.plugins.host import PluginHost
 from afkb.store import load
 from afkb.store.vocabulary import local_name
 from afkb_mapping.demo_table import transient_per_place
-from afkb_mapping.geometry import T_from_xy_yaw, transform_xy
-from afkb_mapping.grid_input import insert_view
+from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_mapping.memory.storing import memory_of
 from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.perception import Perception
@@ -40,15 +39,19 @@ from afkb_mapping.run_record import Settings, Stages
 from afkb_simulation.reading import world_path
 from afkb_simulation.truth import load_truth
 from bench.detectors.seen import placed_views
-from bench.mapping.deceived import beam_weights, best_pose, cell_weights, field_of
+from bench.mapping.deceived import beam_weights, best_pose, cell_weights, ends_of, field_of
 from bench.mapping.deceived_picture import picture
 from bench.mapping.rearranged import rearranged
 from bench.paper_home import compare
 
 Array = NDArray[np.float64]
+Off = tuple[float, float, float]
 
 WORLD = "world:paper_home"
+SENSES = ("laser", "depth")
 OCCUPIED = 0.65
+LEAST_BEAMS = 40
+"""A view that meets less fixes no pose in any map."""
 RIGHT_M, RIGHT_RAD = 0.1, math.radians(3)
 """Two steps of the search either way."""
 SEED = 5
@@ -122,36 +125,44 @@ def _matched(host: PluginHost, visits: Visits, pictures: Path | None) -> dict[st
     stored = load(visits.folder)
     nodes = stored.instances("ObservedEntity")
     dynamic = {local_name(n.value) for n in nodes if stored.name(n, "afn:movability") == "Dynamic"}
-    grid = _scanned(visits.folder)
-    occupied = np.nan_to_num(grid.probability, nan=0.0) > OCCUPIED
-    weights = cell_weights(grid, list(known.things.values()), dynamic)
-    fields = {
-        "metric": field_of(grid, occupied, np.ones_like(weights)),
-        "affordance": field_of(grid, occupied, weights),
-    }
+    things = list(known.things.values())
     perception = Perception(host.detectors(()), Stages())
-    errors: dict[str, list[tuple[float, float, float]]] = {name: [] for name in fields}
-    for view in visits.later:
-        assert view.scan is not None
-        ends = transform_xy(view.T_map_laser, view.scan.points_xy)
-        beams = beam_weights(ends, perception.detections(view), network)
-        errors["metric"].append(best_pose(view, fields["metric"], np.ones(len(ends))))
-        errors["affordance"].append(best_pose(view, fields["affordance"], beams))
-    if pictures is not None:
-        things = [t for i, t in known.things.items() if i in dynamic]
-        _draw(pictures, visits, grid, occupied, things, errors)
-    return {"views": len(visits.later), **{n: _summary(e) for n, e in errors.items()}}
+    detections = [perception.detections(view) for view in visits.later]
+    told: dict[str, Any] = {}
+    for sense in SENSES:
+        grid = _met(visits.folder, sense)
+        occupied = np.nan_to_num(grid.probability, nan=0.0) > OCCUPIED
+        weights = cell_weights(grid, things, dynamic)
+        plain = field_of(grid, occupied, np.ones_like(weights))
+        weighed = field_of(grid, occupied, weights)
+        errors: dict[str, list[Off]] = {"metric": [], "affordance": []}
+        seen = []
+        for view, found in zip(visits.later, detections, strict=True):
+            ends = ends_of(view, sense)
+            if len(ends) < LEAST_BEAMS:
+                continue
+            beams = beam_weights(ends, found, network)
+            errors["metric"].append(best_pose(view, ends, plain, np.ones(len(ends))))
+            errors["affordance"].append(best_pose(view, ends, weighed, beams))
+            seen.append((view, ends))
+        told[sense] = {"views": len(seen), **{n: _summary(e) for n, e in errors.items()}}
+        if pictures is not None:
+            moving = [t for t in things if t.id in dynamic]
+            _draw(pictures / f"deceived-{sense}.svg", grid, occupied, moving, seen, errors)
+    return told
 
 
-def _scanned(folder: Path) -> OccupancyGrid:
-    """What the scans of a visit have met: a plain metric map."""
+def _met(folder: Path, sense: str) -> OccupancyGrid:
+    """What the views of a visit have met: a plain metric map."""
     builder = GridBuilder()
     for remembered in memory_of(folder).settled_views:
-        insert_view(builder, remembered.view)
+        view = remembered.view
+        ends = ends_of(view, sense)
+        builder.insert_beams(view.T_map_base[:2, 3], ends, np.ones(len(ends), dtype=np.bool_))
     return builder.grid()
 
 
-def _summary(errors: list[tuple[float, float, float]]) -> dict[str, float]:
+def _summary(errors: list[Off]) -> dict[str, float]:
     off = np.array([math.hypot(x, y) for x, y, _ in errors])
     turned = np.array([abs(yaw) for _, _, yaw in errors])
     right = (off <= RIGHT_M + 1e-9) & (turned <= RIGHT_RAD + 1e-9)
@@ -164,32 +175,32 @@ def _summary(errors: list[tuple[float, float, float]]) -> dict[str, float]:
 
 
 def _draw(
-    pictures: Path,
-    visits: Visits,
+    file: Path,
     grid: OccupancyGrid,
     occupied: NDArray[np.bool_],
     things: list[Thing],
-    errors: dict[str, list[tuple[float, float, float]]],
+    seen: list[tuple[View, Array]],
+    errors: dict[str, list[Off]],
 ) -> None:
     """The view in which the two ways of matching differ most."""
     off = {n: [math.hypot(x, y) + abs(t) for x, y, t in e] for n, e in errors.items()}
     worst = int(np.argmax(np.subtract(off["metric"], off["affordance"])))
     poses = {name: errors[name][worst] for name in errors}
-    pictures.mkdir(parents=True, exist_ok=True)
-    text = picture(grid, occupied, things, visits.later[worst], poses)
-    (pictures / "metric-map-deceived.svg").write_text(text, encoding="utf-8")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    view, ends = seen[worst]
+    file.write_text(picture(grid, occupied, things, view, ends, poses), encoding="utf-8")
 
 
 def table(result: dict[str, Any]) -> Iterator[str]:
     """The figures, then both ways of matching."""
     for what, value in result["figures"].items():
         yield f"{what}: {value}"
-    matched = result["matched"]
-    yield f"{matched['views']} scans of a later visit ({result['later visit']}) in the first map"
-    yield f"  {'':12} right (0.1 m, 3°)  mean m  greatest m  greatest °"
-    for name in ("metric", "affordance"):
-        r = matched[name]
-        yield (
-            f"  {name:12} {r['right']:17.3f} {r['mean_m']:7.3f} {r['greatest_m']:11.3f}"
-            f" {r['greatest_deg']:11.1f}"
-        )
+    for sense, matched in result["matched"].items():
+        yield f"{matched['views']} views of a later visit ({result['later visit']}), by {sense}"
+        yield f"  {'':12} right (0.1 m, 3°)  mean m  greatest m  greatest °"
+        for name in ("metric", "affordance"):
+            r = matched[name]
+            yield (
+                f"  {name:12} {r['right']:17.3f} {r['mean_m']:7.3f} {r['greatest_m']:11.3f}"
+                f" {r['greatest_deg']:11.1f}"
+            )

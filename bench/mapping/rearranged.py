@@ -26,6 +26,10 @@ def rearranged(world: Path, out: Path, kb: AfNet, seed: int) -> Path:
     """
     rng = np.random.default_rng(seed)
     content = yaml.safe_load(world.read_text(encoding="utf-8"))
+    # To YAML 1.1 the key `on` is a truth value.
+    content["things"] = [
+        {k if k is not True else "on": v for k, v in t.items()} for t in content["things"]
+    ]
     things: list[dict[str, Any]] = content["things"]
     for thing in [t for t in things if _moves(t, kb)]:
         if rng.random() < GONE:
