@@ -98,7 +98,7 @@ def table(result: dict[str, dict[str, dict[str, Any]]]) -> Iterator[str]:
                 yield said(f"{method}, {variant}", list(plans.values()))
 
 
-HEAD = "{:46} precision recall   MCC  of cells  rooms of     s"
+HEAD = "{:52} precision recall   MCC  of cells  rooms of     s"
 
 
 def said(name: str, of: Sequence[Scores]) -> str:
@@ -107,4 +107,4 @@ def said(name: str, of: Sequence[Scores]) -> str:
     found, true = (round(sum(s[k] for s in of)) for k in ("segments", "rooms"))
     seconds = max(s["seconds"] for s in of)
     numbers = f"{found:6d} {true:2d} {seconds:5.2f}"
-    return f"{name:46} {p:9.3f} {r:6.3f} {mcc:5.3f} {cells:9.3f} {numbers}"
+    return f"{name:52} {p:9.3f} {r:6.3f} {mcc:5.3f} {cells:9.3f} {numbers}"
