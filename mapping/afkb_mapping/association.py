@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from afkb.flow import Detection, View
+from afkb.inference import Network
 from afkb_mapping.footprint import Footprint
+from afkb_mapping.same_kind import same_kind
 from afkb_mapping.same_thing import (
     FAR_M,
     SURFACE_GAP_M,
@@ -31,12 +34,16 @@ from afkb_mapping.tracks import SURFACE_CELL_M, THING_CELL_M, ObservedTrack
 
 
 class Association:
-    """Keeps the observed tracks, and matches each view's detections to them."""
+    """Keeps the observed tracks, and matches each view's detections to them.
 
-    def __init__(self, new_id: Callable[[str], str]) -> None:
+    `births`, `merges` and `splits` count tracks that began, that turned out to be of one thing, and
+    that turned out to be of two. With a `network`, no track is of a thing of another kind.
+    """
+
+    def __init__(self, new_id: Callable[[str], str], network: Network | None = None) -> None:
         self.tracks = TrackIndex()
-        self.births = self.merges = 0
-        self._new_id = new_id
+        self.births = self.merges = self.splits = 0
+        self._new_id, self._network = new_id, network
         self._merged_into: dict[str, str] = {}
 
     def match(self, view: View, detections: Sequence[Detection]) -> list[ObservedTrack | None]:
@@ -129,12 +136,34 @@ class Association:
             return [None] * len(detections)
         middles = np.array([t.footprint.middle() for t in tracks])
         cost = np.array([distances(tracks, middles, d) for d in detections])
+        if self._network is not None:
+            for row, column in np.argwhere(cost < FAR_M).tolist():
+                if not same_kind(tracks[column], detections[row], self._network):
+                    cost[row, column] = FAR_M
         rows, columns = linear_sum_assignment(cost)
         found: list[ObservedTrack | None] = [None] * len(detections)
         for row, column in zip(rows, columns, strict=True):
             if cost[row, column] < FAR_M:
                 found[row] = tracks[column]
+        self._split(detections, found, tracks, cost)
         return found
+
+    def _split(
+        self,
+        detections: Sequence[Detection],
+        found: Sequence[ObservedTrack | None],
+        tracks: Sequence[ObservedTrack],
+        cost: NDArray[np.float64],
+    ) -> None:
+        """Part what one view shows to be two things: both lie where one track has been seen."""
+        for row, detection in enumerate(detections):
+            column = int(cost[row].argmin())
+            if found[row] is not None or cost[row, column] >= FAR_M:
+                continue
+            one = tracks[column]
+            if one in found and one.footprint.share_within(detection.footprint_xy, 0.0) > 0.5:
+                one.footprint.give_up(detection.footprint_xy)
+                self.splits += 1
 
     def _things_near(self, detections: Sequence[Detection]) -> list[ObservedTrack]:
         """The things among the tracks that one of the detections may be of, in order of birth."""

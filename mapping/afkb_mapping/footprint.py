@@ -83,6 +83,14 @@ class Footprint:
         n, m = other._hits.shape
         self._hits[i : i + n, j : j + m] += other._hits
 
+    def give_up(self, points_xy: NDArray[np.float64]) -> None:
+        """Forget the cells of points (N, 2) that turned out to be another thing's."""
+        cells = self._cells(points_xy) - self._low
+        inside = ((cells >= 0) & (cells < self._hits.shape)).all(axis=1)
+        i, j = cells[inside].T
+        self._hits[i, j] = 0
+        self._forget()
+
     def _forget(self) -> None:
         """Drop what was derived from the counts, since they change."""
         self._near.clear()

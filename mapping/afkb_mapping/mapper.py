@@ -39,7 +39,7 @@ class AffordanceMapper:
         self._network = network
         self._rule = update_rule(rule)
         self._new_id = Ids()
-        self._association = Association(self._new_id)
+        self._association = Association(self._new_id, network)
         self._places = Places(self._new_id)
         self._bounds = BoundMerger()
         self._doorways = DoorwayMerger(passage_width(network.knowledge_base))
@@ -82,6 +82,7 @@ class AffordanceMapper:
             counts={
                 "births": self._association.births,
                 "merges": self._association.merges,
+                "splits": self._association.splits,
                 "refuted": self._refuted,
             },
         )
