@@ -1,4 +1,4 @@
-"""The paper's figures, and its claim that moved things deceive a metric map and not this one.
+"""The paper's figures, and what its claim comes to that moved things deceive a metric map.
 
     python -m bench.mapping paper [--first HOME --later HOME] [--pictures FOLDER]
 

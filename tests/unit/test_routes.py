@@ -1,5 +1,7 @@
 """Routes keep clear of what stands there by the robot's radius, and errors say what would help."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy import ndimage
@@ -68,15 +70,30 @@ def test_a_route_keeps_clear_by_the_radius_and_is_no_longer_than_it_must(kb, rad
     found = route(known, kb, "0.6,3.4", "7.4, 3.4", radius)
     blocked = known.grid.grid.probability > 0.65
     clearance = (ndimage.distance_transform_edt(~blocked) - 0.5) * CELL_M
-    line = np.concatenate(
-        [np.linspace(a, b, 200) for a, b in zip(found.path, found.path[1:], strict=False)]
-    )
+    line = np.concatenate([np.linspace(a, b, 200) for a, b in pairwise(found.path)])
     cells = np.floor(line / CELL_M).astype(int)
     assert clearance[cells[:, 1], cells[:, 0]].min() >= radius - 1e-6
     tight = 2 * np.hypot(3.4, 1.0 + radius)
     assert tight - 0.01 <= found.length <= 1.03 * tight
     assert np.allclose(found.path[0], [0.6, 3.4]) and np.allclose(found.path[-1], [7.4, 3.4])
     assert found.doorways == ("doorway-1",) and found.rooms == ("room-1", "room-2")
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_among_scattered_things_a_route_keeps_clear_too(kb, seed) -> None:
+    rng = np.random.default_rng(seed)
+    drawn = [(*rng.uniform(0.5, (7.5, 3.5)), 0.15, WALL) for _ in range(14)]
+    known = two_rooms(drawn=drawn)
+    planner = Planner.of(known, 0.1)
+    start = planner.standing.start(known.places["place-1"], "--from")
+    reached = np.argwhere(np.isfinite(planner.paths.costs(start)))
+    for cell in reached[rng.integers(len(reached), size=6)]:
+        path = planner.paths.path(start, (int(cell[0]), int(cell[1])))
+        line = np.concatenate([path, *(np.linspace(a, b, 300) for a, b in pairwise(path))])
+        cells = np.floor(line / CELL_M).astype(int)
+        # A point on the border of two cells may be counted to the other one.
+        assert planner.where.clearance_m[cells[:, 1], cells[:, 0]].min() >= 0.1 - CELL_M
+        assert np.allclose(planner.where.middles(cell[None])[0], path[-1])
 
 
 def test_rooms_by_kind_nodes_and_points_name_ends_and_the_nodes_between(kb) -> None:

@@ -15,6 +15,8 @@ from afkb_mapping.routes.standing_points import Standing
 
 NEAR_M = 1.0
 """A narrow place this near to a doorway's middle is that doorway."""
+LEAST_RADIUS_M = 0.05
+"""A gap that lets only narrower robots through is one of the map, and no way."""
 EIGHT = np.ones((3, 3), dtype=int)
 
 
@@ -50,7 +52,7 @@ def no_way(standing: Standing, start: Cell, end: End) -> str:
     name, where = name_of(end), standing.where
     goal = standing.at_any_width(end)
     narrow = narrowest(where, start, goal) if goal else None
-    if narrow is None:
+    if narrow is None or narrow.radius_m < LEAST_RADIUS_M:
         return f"no way to {name}: walls, or what nobody has seen, lie between"
     xy = narrow.x, narrow.y
     doors = standing.known.doorways.values()

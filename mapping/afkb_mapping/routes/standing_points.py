@@ -42,7 +42,9 @@ class Standing:
         if isinstance(end, Kind):
             raise RouteError(f"{name}: a route starts at a point, a node or a room")
         self.check(end, name)
-        cell = self.at(end, np.where(self.where.free, 0.0, np.inf))
+        everywhere = np.where(self.where.free, 0.0, np.inf)
+        known = np.where(self._driven_about(), 0.0, np.inf)
+        cell = self.at(end, known) or self.at(end, everywhere)
         if cell is None:
             radius = self.where.radius_m
             raise RouteError(
@@ -59,6 +61,16 @@ class Standing:
             places = [p.xy for p in self.known.places.values() if p.room == end.id]
             return self._best(places, costs) or self._best([end.xy], costs)
         return None if isinstance(end, Kind) else self._best([end.xy], costs)
+
+    def _driven_about(self) -> Mask:
+        """(rows, cols): free cells that hang together with a place where a robot has stood.
+
+        What else is free is mostly a hollow in furniture.
+        """
+        parts, _ = ndimage.label(self.where.free, structure=np.ones((3, 3), dtype=int))
+        places = [self.where.nearest(p.xy, SNAP_M) for p in self.known.places.values()]
+        driven: Mask = np.isin(parts, [parts[cell] for cell in places if cell is not None])
+        return driven
 
     def at_any_width(self, end: End) -> Cell | None:
         """Where a robot of no width would stand at an end."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +14,8 @@ Array = NDArray[np.float64]
 
 RESAMPLED_M = 0.25
 """Corners of a path are sought among points this far apart: half a robot's width."""
+TOUCH_M = 1e-6
+"""A cell that a line is in for less is touched by rounding alone."""
 PULLS = 4
 """An even number: from either end in turn."""
 SLACK = 1.0 + 1e-6
@@ -31,11 +34,12 @@ def cells_on(where: Drivable, start_xy: Array, end_xy: Array) -> tuple[NDArray[n
             low, high = sorted((a[k], b[k]))
             cuts.append((np.arange(np.ceil(low), np.floor(high) + 1) - a[k]) / (b[k] - a[k]))
     shares = np.unique(np.clip(np.concatenate(cuts), 0.0, 1.0))
+    metres = np.diff(shares) * float(np.linalg.norm(end_xy - start_xy))
+    if not (metres > TOUCH_M).any():
+        return np.floor(a[None, ::-1]).astype(np.intp), np.zeros(1)
     middles = a + ((shares[1:] + shares[:-1]) / 2)[:, None] * (b - a)
-    if len(shares) < 2:
-        middles, shares = a[None], np.array([0.0, 0.0])
-    length = float(np.linalg.norm(end_xy - start_xy))
-    return np.floor(middles[:, ::-1]).astype(np.intp), np.diff(shares) * length
+    crossed = metres > TOUCH_M
+    return np.floor(middles[crossed][:, ::-1]).astype(np.intp), metres[crossed]
 
 
 def cost_of(where: Drivable, start_xy: Array, end_xy: Array) -> float:
@@ -67,12 +71,13 @@ def length_of(points_xy: Array) -> float:
 
 def _pulled(where: Drivable, points: Array) -> Array:
     steps = [cost_of(where, a, b) for a, b in pairwise(points)]
-    along = np.concatenate([[0.0], np.cumsum(steps)])
     kept, at = [0], 0
     while at < len(points) - 1:
         for to in range(len(points) - 1, at, -1):
+            if to == at + 1:
+                break
             direct = cost_of(where, points[at], points[to])
-            if to == at + 1 or direct <= (along[to] - along[at]) * SLACK:
+            if math.isfinite(direct) and direct <= sum(steps[at:to]) * SLACK:
                 break
         kept.append(to)
         at = to
