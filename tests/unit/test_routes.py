@@ -14,6 +14,7 @@ from afkb_mapping.routes.planner import Planner
 from afkb_mapping.routes.route_map import MappedRoom, RouteMap, Spot, Thing
 from afkb_mapping.routes.search import search
 from afkb_mapping.routes.stored_grid import StoredGrid, read_grid
+from afkb_mapping.routes.straight import cost_of, shortened
 
 CELL_M = 0.05
 FREE, WALL = 0.05, 0.97
@@ -94,6 +95,18 @@ def test_among_scattered_things_a_route_keeps_clear_too(kb, seed) -> None:
         # A point on the border of two cells may be counted to the other one.
         assert planner.where.clearance_m[cells[:, 1], cells[:, 0]].min() >= 0.1 - CELL_M
         assert np.allclose(planner.where.middles(cell[None])[0], path[-1])
+
+
+def test_a_step_that_cannot_be_driven_opens_no_short_cut(kb) -> None:
+    where = Planner.of(two_rooms(), 0.1).where
+    beside_the_wall = [3.95, 1.9]
+    round_about = np.array([[1.0, 0.5], beside_the_wall, [4.0, 2.0], [4.1, 2.0], [7.0, 0.5]])
+    assert not np.isfinite(cost_of(where, np.array([3.95, 0.5]), np.array(beside_the_wall)))
+    path = shortened(where, np.insert(round_about, 1, [3.95, 0.5], axis=0))
+    across = [
+        a + (4.02 - a[0]) / (b[0] - a[0]) * (b - a) for a, b in pairwise(path) if a[0] < 4.02 < b[0]
+    ]
+    assert all(1.6 < y < 2.4 for _, y in across) and across
 
 
 def test_rooms_by_kind_nodes_and_points_name_ends_and_the_nodes_between(kb) -> None:
