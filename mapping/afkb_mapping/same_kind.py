@@ -9,9 +9,10 @@ from afkb.flow import Detection
 from afkb.inference import Network
 from afkb_mapping.tracks import ObservedTrack
 
-LEAST_ALIKE = 0.1
+LEAST_ALIKE = 0.03
 """Bhattacharyya coefficient of two posteriors over what a thing is, below which they hardly share a
-category. Views of a part see other affordances than views of the whole, so little is asked for."""
+category. Views of a part see other affordances than views of the whole, so only what next to
+excludes each other is kept apart."""
 
 
 def same_kind(track: ObservedTrack, detection: Detection, network: Network) -> bool:

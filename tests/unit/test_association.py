@@ -41,10 +41,10 @@ def test_things_that_share_no_kind_are_not_one() -> None:
     network = network_of(AfNet.load())
     pours = {"ContainAbility": 0.99, "PourAbility": 0.95}
     mug = replace(container(2.0, 0.0), affordances=pours)
-    saucer = container(2.0, 0.0, height=0.04, width=0.16)
-    saucer = replace(saucer, affordances={"ContainAbility": 0.02, "DisposeAbility": 0.6})
+    tray = container(2.0, 0.0, height=0.02, width=0.25)
+    tray = replace(tray, affordances={"ContainAbility": 0.02, "StackAbility": 0.95})
     for association, births in ((Association(Ids(), network), 2), (Association(Ids()), 1)):
         association.match(view(0), [mug])
         association.match(view(1), [mug])
-        association.match(view(2), [saucer])
+        association.match(view(2), [tray])
         assert association.births == births
