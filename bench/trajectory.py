@@ -20,6 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
+from afkb.errors import BadFrame
 from afkb.flow import View
 from afkb.plugins.host import PluginHost
 from afkb_mapping.geometry import T_from_xy_yaw, yaw_of
@@ -37,16 +38,20 @@ def run(recording: str, options: dict[str, str], stride: int) -> dict:
     views = [v for v in source.views(stride=stride) if isinstance(v, View)]
     sample = views[:: max(1, len(views) // SAMPLED_VIEWS)]
     registration = ScanRegistration(level(sample, source.gravity_aligned).T_map_source)
-    registered, matched, milliseconds = [], 0, []
+    used, registered, matched, milliseconds = [], [], 0, []
     for view in views:
         begun = time.perf_counter()
-        placed = registration.place(view)
+        try:
+            placed = registration.place(view)
+        except BadFrame:
+            continue
+        used.append(view)
         milliseconds.append(1e3 * (time.perf_counter() - begun))
         registered.append(placed.T_map_base)
         matched += placed.matched
     return {
-        "stamps": np.array([v.stamp for v in views]),
-        "odometry": _from_first([v.T_odom_base for v in views]),
+        "stamps": np.array([v.stamp for v in used]),
+        "odometry": _from_first([v.T_odom_base for v in used]),
         "registered": _from_first(registered),
         "matched": matched,
         "milliseconds": np.array(milliseconds),

@@ -17,6 +17,7 @@ PARTS = (
     "growth",
     "floorplans",
     "trajectory",
+    "faults",
     "vacuum",
     "loops",
     "relations",

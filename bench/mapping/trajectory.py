@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb.errors import BadFrame
 from afkb.flow import View
 from afkb_mapping.levelling import level
 from afkb_mapping.registration import ScanRegistration
@@ -61,26 +62,33 @@ def _of_home(home: Home, host: AlteringHost, args: argparse.Namespace) -> dict[s
     views = [v for v in source.views(stride=args.stride) if isinstance(v, View)]
     stamps = np.array([v.stamp for v in views])
     errors = _against(home.truth)
-    registered, milliseconds = registered_poses(views, source.gravity_aligned)
+    used, registered, milliseconds = registered_poses(views, source.gravity_aligned)
     found: dict[str, Any] = {
         "views": len(views),
         "odometry": errors(stamps, [v.T_odom_base for v in views]),
-        "registered": errors(stamps, registered),
+        "registered": errors(np.array([v.stamp for v in used]), registered),
+        "lost": len(views) - len(used),
         "ms_per_view": float(np.median(milliseconds)),
     }
     return found | (_map_of(home, host, args.stride) if args.maps else {})
 
 
-def registered_poses(views: list[View], upright: bool) -> tuple[list[Array], list[float]]:
-    """Where registration places each view (4, 4), and the CPU time that it took, ms."""
+def registered_poses(
+    views: list[View], upright: bool
+) -> tuple[list[View], list[Array], list[float]]:
+    """The views that registration places, where (4, 4), and the CPU time that each took, ms."""
     sample = views[:: max(1, len(views) // SAMPLED_VIEWS)]
     registration = ScanRegistration(level(sample, upright).T_map_source)
-    poses, milliseconds = [], []
+    used, poses, milliseconds = [], [], []
     for view in views:
         begun = time.thread_time()
-        poses.append(registration.place(view).T_map_base)
+        try:
+            poses.append(registration.place(view).T_map_base)
+        except BadFrame:
+            continue
+        used.append(view)
         milliseconds.append(1e3 * (time.thread_time() - begun))
-    return poses, milliseconds
+    return used, poses, milliseconds
 
 
 def _map_of(home: Home, host: AlteringHost, stride: int) -> dict[str, Any]:

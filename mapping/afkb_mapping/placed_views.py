@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from afkb.errors import BadFrame
 from afkb.flow import SkippedFrame, View
+from afkb_mapping.placing_record import PlacingRecord
 from afkb_mapping.pose_gate import PoseGate
 from afkb_mapping.registration import ScanRegistration
 from afkb_mapping.run_record import Stages
@@ -21,12 +22,14 @@ def placed_views(
     T_map_source: NDArray[np.float64],
     stages: Stages,
     known: Iterable[View] = (),
+    record: PlacingRecord | None = None,
 ) -> Iterator[View | SkippedFrame]:
     """Every frame of a selection, placed in the map frame, or why it can't be.
 
-    `known`: placed views of earlier visits, which the first ones are registered to.
+    `known`: placed views of earlier visits, which the first ones are registered to. `record` is
+    told where the robot was lost.
     """
-    registration, gate = ScanRegistration(T_map_source), PoseGate()
+    registration, gate = ScanRegistration(T_map_source, record), PoseGate()
     with stages.timed("register"):
         for view in known:
             registration.recall(view)

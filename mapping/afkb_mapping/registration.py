@@ -13,11 +13,14 @@ from numpy.typing import NDArray
 
 from afkb.flow import View
 from afkb_mapping.geometry import T_from_xy_yaw
+from afkb_mapping.lost import Lost
 from afkb_mapping.odometry import step_covariance
-from afkb_mapping.scan_matching import LocalMap, agreement, rotation
+from afkb_mapping.placing_record import PlacingRecord
+from afkb_mapping.scan_matching import LocalMap, Match, agreement, apply_motion, rotation
 from afkb_mapping.scan_surface import SurfacePoints
+from afkb_mapping.seen_through import compared
 from afkb_mapping.surface_map import SurfaceMap
-from afkb_mapping.view_matching import best_match, inverse
+from afkb_mapping.view_matching import GOOD_OVERLAP, best_match, inverse
 from afkb_mapping.view_surface import ViewSurface, surface_in_map
 
 Array = NDArray[np.float64]
@@ -26,8 +29,9 @@ NEW_GROUND = 0.5
 """Where this part of a view finds no surface within reach, it shows new ground, no wrong pose."""
 NEAR_M = 1.0
 """... within this reach."""
-LOST_VIEWS = 3
-"""After this many unmatched views in a row the map starts anew at the odometry's place."""
+UNMATCHED_VIEWS = 3
+"""After this many unmatched views in a row, none of which looks through the map, odometry is
+believed: what was mapped here has changed."""
 RADIUS_M = 15.0
 """Map within this distance of the robot takes part in a match, whatever the sensor's range."""
 
@@ -51,9 +55,12 @@ class ScanRegistration:
     """Places views one after another; the first one defines the map frame.
 
     `T_map_odom` takes the source's pose frame to the map frame at the first view (levelling).
+    `record` is told where the robot was lost and found again.
     """
 
-    def __init__(self, T_map_odom: Array) -> None:
+    def __init__(self, T_map_odom: Array, record: PlacingRecord | None = None) -> None:
+        self._record = record or PlacingRecord()
+        self._lost = Lost()
         self._T_map_odom = T_map_odom.astype(np.float64)
         self._T_odom_base: Array | None = None
         self._covariance = np.zeros((3, 3))
@@ -65,6 +72,7 @@ class ScanRegistration:
         """Where the view was taken; what it sees becomes part of the map that later ones match.
 
         Without a laser, given camera poses (`has_base` False) are kept: they are no odometry.
+        Raises `BadFrame` where it was not taken where odometry has it, nor surely anywhere else.
         """
         T_predicted = self._T_map_odom @ view.T_odom_base
         if not view.has_base and view.scan is None:
@@ -74,11 +82,13 @@ class ScanRegistration:
         self._T_odom_base = view.T_odom_base
         seen = surface_in_map(view, T_predicted)
         if seen.is_blind:
+            self._lost.check(view)
+            self._record.blind += 1
             return PlacedPose(T_predicted, self._covariance + self._drift, False, 0.0)
         if not len(self._map_of(seen)):
             self._take_in(seen)
             return PlacedPose(T_predicted, self._covariance + self._drift, True, 1.0)
-        return self._match(seen, T_predicted)
+        return self._match(view, seen, T_predicted)
 
     def recall(self, view: View) -> None:
         """Make what a placed view of an earlier visit shows part of the map, as it is placed."""
@@ -92,32 +102,61 @@ class ScanRegistration:
     def _map_of(self, seen: ViewSurface) -> SurfaceMap:
         return self._scans if seen.by_laser else self._images
 
-    def _match(self, seen: ViewSurface, T_predicted: Array) -> PlacedPose:
+    def _match(self, view: View, seen: ViewSurface, T_predicted: Array) -> PlacedPose:
         pivot = T_predicted[:2, 3].copy()
         prior = self._drift + np.diag(np.square(seen.odometry_floor))
         surface = seen.surest.near(pivot, RADIUS_M)
         reach = float(np.linalg.norm(surface.points_xy - pivot, axis=1).max()) + NEAR_M
         local_map = LocalMap(self._map_of(seen).near(pivot, reach))
         match = best_match(surface, local_map, pivot, prior)
+        fits = match is not None and match.overlap >= GOOD_OVERLAP
+        if self._lost and fits and seen.by_laser:  # it sees all round: hardly by chance
+            self._lost.end(view, self._record)
+        if self._lost or (not fits and _contradicts(surface, match, local_map, pivot)):
+            return self._look_for_place(view, seen, T_predicted, prior)
         if match is None:
             return self._go_on_by_odometry(seen, surface, local_map, T_predicted)
-        self._unmatched, self._drift = 0, np.zeros((3, 3))
         self._covariance = inverse(match.information + inverse(prior))
-        T_correction = _about(pivot, match.motion)
+        return self._settle(seen, match, T_predicted)
+
+    def _settle(self, seen: ViewSurface, match: Match, T_predicted: Array) -> PlacedPose:
+        """Believe a match: the view becomes part of the map, and odometry is corrected."""
+        self._unmatched, self._drift = 0, np.zeros((3, 3))
+        T_correction = _about(T_predicted[:2, 3], match.motion)
         self._T_map_odom = T_correction @ self._T_map_odom
         self._take_in(seen.moved(T_correction[:2, :2], T_correction[:2, 3]))
         return PlacedPose(T_correction @ T_predicted, self._covariance, True, match.overlap)
 
+    def _look_for_place(
+        self, view: View, seen: ViewSurface, T_predicted: Array, prior: Array
+    ) -> PlacedPose:
+        """A lost robot looks for where its last views fit the map, near odometry or anywhere."""
+        surface_map = self._map_of(seen)
+        match = self._lost.look(view, seen, T_predicted, prior, surface_map, self._record)
+        self._covariance = inverse(match.information)
+        return self._settle(seen, match, T_predicted)
+
     def _go_on_by_odometry(
         self, seen: ViewSurface, surface: SurfacePoints, local_map: LocalMap, T_predicted: Array
     ) -> PlacedPose:
-        """Keep odometry's pose; take the view in only where it can't double a wall, or if lost."""
+        """Keep odometry's pose; take the view in only where it can't double a wall."""
         self._unmatched += 1
         overlap, _ = agreement(surface, local_map)
         _, found = local_map.nearest(surface, NEAR_M)
-        if found.mean() < 1 - NEW_GROUND or self._unmatched > LOST_VIEWS:
+        is_new = found.mean() < 1 - NEW_GROUND or self._unmatched > UNMATCHED_VIEWS
+        if is_new and not compared(surface, local_map.surface, T_predicted[:2, 3]).disagrees:
             self._take_in(seen)
         return PlacedPose(T_predicted, self._covariance + self._drift, False, overlap)
+
+
+def _contradicts(
+    seen: SurfacePoints, match: Match | None, local_map: LocalMap, pivot_xy: Array
+) -> bool:
+    """Whether what is seen contradicts the map, even where it matches best."""
+    placed = seen if match is None else apply_motion(match.motion, pivot_xy, seen)
+    center = pivot_xy if match is None else pivot_xy + match.motion[:2]
+    comparison = compared(placed, local_map.surface, center)
+    return comparison.disagrees if match is None else comparison.contradicts
 
 
 def _about(pivot: Array, motion: Array) -> Array:

@@ -23,7 +23,7 @@ from afkb_mapping.memory.visit import Visit
 from afkb_mapping.placed_views import skipped
 from afkb_mapping.run_record import Settings, Stages, run_record
 from afkb_mapping.selection import Selection
-from afkb_mapping.visits.beginning import beginning_of, check_continuing
+from afkb_mapping.visits.beginning import Beginning, beginning_of, check_continuing
 
 NO_DEPTH = "no depth in this recording: the map has a grid and rooms by their shape, no affordances"
 
@@ -78,7 +78,7 @@ def make_map(
         if not way.used:
             raise SourceError(selection.nothing_usable(way.skipped))
         with stages.timed("finish"):
-            found = _finished(crew, beginning.visit, way)
+            found = _finished(crew, beginning, way)
         run = run_record(
             settings,
             stages,
@@ -136,11 +136,13 @@ class _Way:
         self.with_depth += view.depth_m is not None
 
 
-def _finished(crew: Crew, visit: Visit, way: _Way) -> TopologicalMap:
+def _finished(crew: Crew, beginning: Beginning, way: _Way) -> TopologicalMap:
+    visit, placing = beginning.visit, beginning.placing
     found = _closed(crew, visit, crew.finish(visit.T_map_source))
     nothing = NO_DEPTH if not way.with_depth else None if found.entities else NOTHING_SEEN
-    notes = (n for n in (*visit.notes, nothing) if n)
-    return replace(found, notes=(*found.notes, *notes))
+    notes = (n for n in (*visit.notes, *placing.notes, nothing) if n)
+    counts = {**found.counts, **placing.counts}
+    return replace(found, notes=(*found.notes, *notes), counts=counts)
 
 
 def _closed(crew: Crew, visit: Visit, found: TopologicalMap) -> TopologicalMap:

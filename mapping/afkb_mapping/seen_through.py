@@ -20,6 +20,12 @@ FACING = 0.3
 """Sine of the least angle to a mapped surface; at less, a small turn changes its range by much."""
 LEAST_COMPARED = 15
 """Fewer directions in which both show a surface tell nothing."""
+LEAST_AGREEING = 0.5
+"""Views that were taken where the map has them agree with it in more directions than this, but for
+one in a hundred; in so few agree 19 of 20 that were taken elsewhere,"""
+LEAST_THROUGH = 0.1
+"""and these look through this share of what is mapped, where the others are stopped by new things.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +48,16 @@ class Comparison:
     def agreeing(self) -> float:
         """Share of the directions in which both show the same."""
         return 1 - (self.through + self.before) / max(self.compared, 1)
+
+    @property
+    def disagrees(self) -> bool:
+        """Whether most of what is seen is not as the map has it."""
+        return self.compared >= LEAST_COMPARED and self.agreeing < LEAST_AGREEING
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether the view was taken elsewhere: new things alone don't explain what it sees."""
+        return self.disagrees and self.through_share > LEAST_THROUGH
 
 
 def compared(seen: SurfacePoints, mapped: SurfacePoints, sensor_xy: Array) -> Comparison:

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import laser_samples as samples
+from afkb.errors import BadFrame
 from afkb.flow import LaserScan, View
 from afkb_mapping.geometry import T_from_xy_yaw, wrap_angle, yaw_of
+from afkb_mapping.placing_record import PlacingRecord
 from afkb_mapping.registration import ScanRegistration
 
 PATH = [(1 + 0.3 * i, 2.5, 0.1 * i) for i in range(10)]
@@ -163,3 +165,49 @@ def test_the_same_views_are_placed_alike_twice():
     ]
     once, again = place_all(views), place_all(views)
     assert all(np.array_equal(a.T_map_base, b.T_map_base) for a, b in zip(once, again, strict=True))
+
+
+def placed_or_skipped(views, record):
+    registration = ScanRegistration(np.linalg.inv(views[0].T_odom_base), record)
+    for view in views:
+        try:
+            yield registration.place(view)
+        except BadFrame:
+            yield None
+
+
+def test_a_robot_that_was_carried_is_lost_and_finds_itself_in_its_map():
+    rng = np.random.default_rng(6)
+    there = [(7.5 - 0.3 * i, 4.8, 2.5) for i in range(5)]
+    way = PATH + there + [(1.2 + 0.3 * i, 2.5, 0.1 * i) for i in range(7)]
+    carried = np.linalg.inv(T_from_xy_yaw(1.2, 2.5, 0.0))
+    on = [T_from_xy_yaw(*there[-1]) @ carried @ T_from_xy_yaw(*p) for p in way[-7:]]
+    odom = PATH + there + [(T[0, 3], T[1, 3], yaw_of(T)) for T in on]
+    views = [
+        samples.view(samples.FLAT, p, o, i, rng)
+        for i, (p, o) in enumerate(zip(way, odom, strict=True))
+    ]
+    record = PlacingRecord()
+    placed = list(placed_or_skipped(views, record))
+    lost = [i for i, p in enumerate(placed) if p is None]
+    assert lost and lost[0] == len(PATH + there)
+    assert record.counts["lost_views"] == len(lost) < 4
+    assert record.counts["found_again"] == 1
+    used = [(p, w) for p, w in zip(placed, way, strict=True) if p is not None]
+    shift, _ = errors([p for p, _ in used], [w for _, w in used])
+    assert shift.max() < 0.05
+
+
+def test_another_place_leaves_the_map_as_it_was():
+    rng = np.random.default_rng(7)
+    elsewhere = np.array(
+        [[[0, 0], [4, 0]], [[4, 0], [2, 7]], [[2, 7], [0, 0]], [[1.5, 3], [2.2, 2.4]]], dtype=float
+    )
+    other = [(1.6 + 0.1 * i, 1.5, 0.3 * i) for i in range(8)]
+    views = [samples.view(samples.FLAT, p, p, i, rng) for i, p in enumerate(PATH)]
+    views += [samples.view(elsewhere, p, PATH[-1], 100 + i, rng) for i, p in enumerate(other)]
+    record = PlacingRecord()
+    placed = list(placed_or_skipped(views, record))
+    assert None not in placed[: len(PATH)]
+    assert placed[len(PATH) :] == [None] * len(other)
+    assert "lost from frame 100 on: 8 views" in record.notes[0]

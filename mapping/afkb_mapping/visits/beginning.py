@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from afkb_mapping.memory.recollection import Recollection
 from afkb_mapping.memory.storing import memory_of
 from afkb_mapping.memory.visit import Visit
 from afkb_mapping.placed_views import placed_views
+from afkb_mapping.placing_record import PlacingRecord
 from afkb_mapping.run_record import Settings, Stages
 from afkb_mapping.selection import Selection
 from afkb_mapping.visits.arrival import T_map_source_of_visit
@@ -31,11 +32,13 @@ Array = NDArray[np.float64]
 class Beginning:
     """What is remembered as a run begins; the visit that it makes is the memory's last.
 
-    `recollection`: what an interrupted run had perceived of the same recording.
+    `recollection`: what an interrupted run had perceived of the same recording. `placing`: where
+    the robot was lost on the way.
     """
 
     memory: Memory
     recollection: Recollection
+    placing: PlacingRecord = field(default_factory=PlacingRecord)
 
     @property
     def visit(self) -> Visit:
@@ -45,7 +48,7 @@ class Beginning:
     def placed_views(self, selection: Selection, stages: Stages) -> Iterator[View | SkippedFrame]:
         """The recording's frames at their places in the map, or why they have none."""
         known = (remembered.view for remembered in self.memory.views)
-        return placed_views(selection, self.visit.T_map_source, stages, known)
+        return placed_views(selection, self.visit.T_map_source, stages, known, self.placing)
 
     def check_end(self, settings: Settings, signal: int | None) -> None:
         """Raise `SourceError` where a resumed run ends before the interrupted one did."""
