@@ -8,10 +8,14 @@ import pytest
 
 import laser_samples as samples
 from afkb.errors import MapError
+from afkb.flow import PinholeCamera
 from afkb_mapping.geometry import T_from_xy_yaw
-from afkb_mapping.localisation.bands import ANY, SCAN, BandBuilder, HeightBands
+from afkb_mapping.localisation.bands import FREE, STANDS, UNKNOWN, BandBuilder, HeightBands
 from afkb_mapping.localisation.localiser import Localiser
 from afkb_mapping.localisation.readings import joined, readings_of
+from afkb_mapping.localisation.sensor_model import CLEAR, HIT, LASER_ROW
+from afkb_mapping.localisation.slabs import SLAB_M, SLABS
+from depth_samples import FLOOR, Box, view_of
 
 MAPPED_FROM = [(2, 2, 0), (2.5, 2.5, 1), (5, 2, 0), (7, 2, 2), (7, 4, 0), (3, 3, 2)]
 ASKED_FROM = [(2.3, 1.7, 0.7), (6.6, 2.4, -2.0), (7.2, 3.6, 3.0)]
@@ -71,11 +75,12 @@ def test_a_place_that_is_not_in_the_map_is_no_place(localiser):
 
 def test_alike_rooms_leave_it_lost():
     """Two closed rooms of one size and shape, of a bare square each: eight poses fit."""
-    occupancy = np.full((3, 100, 180), -1, np.int8)
+    scan = np.full((100, 180), UNKNOWN, np.int8)
     for left in (10, 100):
-        occupancy[SCAN, 10:80, left : left + 70] = 95
-        occupancy[SCAN, 12:78, left + 2 : left + 68] = 5
-    there = Localiser(HeightBands(occupancy, np.zeros(2)))
+        scan[10:80, left : left + 70] = STANDS
+        scan[12:78, left + 2 : left + 68] = FREE
+    unseen = np.full((*scan.shape, SLABS), UNKNOWN, np.int8)
+    there = Localiser(HeightBands(scan, unseen, np.zeros(2)))
     angles = np.linspace(0, math.tau, 360, endpoint=False)
     ranges = 1.65 / np.maximum(np.abs(np.cos(angles)), np.abs(np.sin(angles)))
     view = view_at(ASKED_FROM[0])
@@ -95,7 +100,7 @@ def test_several_views_are_asked_as_one(localiser):
         for pose, T in ((first, odometry), (last, T_last))
     ]
     both = joined(views)
-    assert len(both) == sum(len(v) for v in views) and len(both.origins_xy) == 2
+    assert len(both) == sum(len(v) for v in views) and len(both.origins_xyz) == 2
     found = localiser.locate(views)
     assert not found.lost
     assert math.hypot(found.x - last[0], found.y - last[1]) < 0.06
@@ -105,12 +110,81 @@ def test_bands_are_stored_and_read_back(bands):
     content = bands.to_bytes()
     assert content == bands.to_bytes()
     again = HeightBands.from_bytes(content)
-    assert (again.occupancy == bands.occupancy).all()
+    assert (again.scan == bands.scan).all() and (again.slabs == bands.slabs).all()
     assert (again.origin_xy == bands.origin_xy).all()
-    assert bands.stands(SCAN).any() and not bands.stands(ANY).any()
+    assert (bands.scan == STANDS).any() and (bands.slabs == UNKNOWN).all()
 
 
 @pytest.mark.parametrize("content", [b"", b"not a zip", b"PK\x03\x04 torn"])
 def test_a_damaged_state_is_named(content):
     with pytest.raises(MapError, match=r"bands\.npz"):
         HeightBands.from_bytes(content)
+
+
+# Walls of a 5 m by 4 m room, a wardrobe, a cupboard, a table and a bed.
+ROOM = [
+    Box((-0.1, 0, 0), (0, 4, 2.5)),
+    Box((5, 0, 0), (5.1, 4, 2.5)),
+    Box((0, -0.1, 0), (5, 0, 2.5)),
+    Box((0, 4, 0), (5, 4.1, 2.5)),
+    Box((0, 3.2, 0), (1.4, 4, 1.9)),
+    Box((4.5, 1.0, 0), (5, 1.8, 0.9)),
+    Box((2.2, 0.0, 0.70), (3.6, 0.7, 0.73)),
+    Box((3.2, 2.6, 0.0), (5, 4, 0.5)),
+]
+CHAIR = Box((1.4, 1.8, 0.0), (1.9, 2.3, 0.9))
+SMALL = PinholeCamera(160, 120, 131.0, 131.0, 79.5, 59.5)
+
+
+def seen_at(x, y, quarter_turns, things):
+    """What a camera sees at (x, y) of the room, turned by right angles."""
+    turn = np.linalg.matrix_power(np.array([[0, 1], [-1, 0]]), quarter_turns)
+
+    def around(thing):
+        corners = (np.array([thing.low[:2], thing.high[:2]]) - [x, y]) @ turn.T
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        return Box((*low, thing.low[2]), (*high, thing.high[2]))
+
+    view = view_of([FLOOR, *map(around, things)], 1.15, 20.0, camera=SMALL)
+    return replace(view, T_map_base=T_from_xy_yaw(x, y, quarter_turns * math.pi / 2))
+
+
+@pytest.fixture(scope="module")
+def furnished() -> Localiser:
+    builder = BandBuilder()
+    for x, y in ((1.0, 1.0), (2.0, 2.6), (3.0, 1.6), (3.9, 2.1)):
+        for quarter_turns in range(4):
+            builder.add(seen_at(x, y, quarter_turns, [*ROOM, CHAIR]))
+    return Localiser(builder.bands())
+
+
+@pytest.mark.parametrize("pose", [(1.4, 1.2, 0), (2.7, 1.9, 3), (0.9, 1.4, 1)])
+def test_depth_alone_places_a_view_though_a_chair_has_gone(furnished, pose):
+    found = furnished.locate([readings_of(seen_at(*pose, ROOM), np.eye(4))])
+    assert math.hypot(found.x - pose[0], found.y - pose[1]) < 0.15
+    assert abs(math.remainder(found.yaw - pose[2] * math.pi / 2, math.tau)) < math.radians(3)
+
+
+def test_a_bare_wall_leaves_a_camera_lost(furnished):
+    wall = [Box((0.8, -9, 0), (0.9, 9, 2.5))]
+    assert furnished.locate([readings_of(seen_at(0, 0, 0, wall), np.eye(4))]).lost
+
+
+def test_floor_and_what_is_far_say_that_the_way_is_clear():
+    readings = readings_of(seen_at(0, 0, 0, [Box((6, -9, 0), (6.1, 9, 2.5))]), np.eye(4))
+    assert (readings.kind == CLEAR).all() and not (readings.row == LASER_ROW).any()
+    near = readings_of(seen_at(0, 0, 0, [Box((2, -9, 0), (2.1, 9, 2.5))]), np.eye(4))
+    met = near.rays()[near.kind == HIT] * near.range_m[near.kind == HIT, None]
+    np.testing.assert_allclose(met[:, 0], 2.0, atol=0.06)
+
+
+def test_slabs_tell_a_table_top_from_what_is_under_and_over_it(furnished):
+    builder = BandBuilder()
+    for x in (1.0, 2.0, 3.0):
+        builder.add(seen_at(x, 2.5, 3, ROOM))
+    bands = builder.bands()
+    col, row = np.floor((np.array([2.9, 0.4]) - bands.origin_xy) / 0.05).astype(int)
+    column = bands.slabs[row, col]
+    assert column[round(0.70 / SLAB_M)] == STANDS
+    assert (column[round(0.80 / SLAB_M) : round(1.0 / SLAB_M)] == FREE).all()
+    assert not (column[round(0.15 / SLAB_M) : round(0.65 / SLAB_M)] == STANDS).any()

@@ -1,8 +1,8 @@
 """What stands where, by height: what a view is held against when a robot asks where it is.
 
-A laser sees one height, a depth camera all; a chair that is moved hides nothing of what is as tall
-as a wall. So there is one grid for what the laser meets, one for whatever stands on the floor, and
-one for what reaches above a person's chest.
+A laser sees one height, a depth camera all. A chair that is moved hides nothing of the wall above
+it, and a table top has a height that a wall has not. So there is one grid for what the laser meets
+and one for each slab of height that depth images show.
 """
 
 from __future__ import annotations
@@ -17,38 +17,32 @@ from numpy.typing import NDArray
 from afkb.errors import MapError
 from afkb.flow import View
 from afkb_mapping.geometry import transform_xy
-from afkb_mapping.occupancy import RESOLUTION_M, GridBuilder
-from afkb_mapping.panorama import panorama_of
+from afkb_mapping.localisation.slabs import CELL_M, SLABS, SlabBuilder
+from afkb_mapping.occupancy import GridBuilder
 
-SCAN, ANY, TALL = 0, 1, 2
-BANDS = 3
 STATE_FILE = "bands.npz"
-"""In the map's `state/`: `occupancy` (BANDS, rows, cols) int8, percent, -1 unknown; `origin_xy`."""
-TRUSTED_M = 5.0
-"""Further away depth is wrong by more than two cells."""
-UNKNOWN = -1
+"""In the map's `state/`: `scan` (rows, cols), `slabs` (rows, cols, SLABS), int8; `origin_xy`."""
+UNKNOWN, FREE, STANDS = -1, 0, 1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeightBands:
-    """Occupancy by height: (BANDS, rows, cols) int8, percent, `UNKNOWN` where nothing was seen.
+    """What is `UNKNOWN`, `FREE` or where something `STANDS`, int8.
 
-    Cells are `RESOLUTION_M` wide; cell (0, 0) has its lower left corner at `origin_xy`, m, map
-    frame; rows run along +y.
+    - `scan` (rows, cols): at the height of the laser.
+    - `slabs` (rows, cols, SLABS): in each slab of height, the lowest on the floor.
+    - `origin_xy` (2,): lower left corner of cell (0, 0), m, map frame; rows run along +y, cells
+      are `CELL_M` wide.
     """
 
-    occupancy: NDArray[np.int8]
+    scan: NDArray[np.int8]
+    slabs: NDArray[np.int8]
     origin_xy: NDArray[np.float64]
-
-    def stands(self, band: int) -> NDArray[np.bool_]:
-        """(rows, cols): cells in which more likely than not something stands."""
-        stands: NDArray[np.bool_] = self.occupancy[band] > 50
-        return stands
 
     def to_bytes(self) -> bytes:
         """The content of `STATE_FILE`; the same for the same bands."""
         file = io.BytesIO()
-        np.savez_compressed(file, occupancy=self.occupancy, origin_xy=self.origin_xy)
+        np.savez_compressed(file, scan=self.scan, slabs=self.slabs, origin_xy=self.origin_xy)
         return file.getvalue()
 
     @classmethod
@@ -56,56 +50,53 @@ class HeightBands:
         """Raises `MapError` where the content is not what `to_bytes` gives."""
         try:
             with np.load(io.BytesIO(content), allow_pickle=False) as stored:
-                occupancy, origin_xy = stored["occupancy"], stored["origin_xy"]
+                scan, slabs, origin_xy = stored["scan"], stored["slabs"], stored["origin_xy"]
         except (ValueError, OSError, KeyError, EOFError, zipfile.BadZipFile) as error:
             raise MapError(f"state/{STATE_FILE}: not readable ({error}); map again") from error
-        if occupancy.ndim != 3 or len(occupancy) != BANDS or origin_xy.shape != (2,):
+        if scan.ndim != 2 or slabs.shape != (*scan.shape, SLABS) or origin_xy.shape != (2,):
             raise MapError(f"state/{STATE_FILE}: not the height bands of a map; map again")
-        return cls(occupancy.astype(np.int8), origin_xy.astype(np.float64))
+        return cls(scan.astype(np.int8), slabs.astype(np.int8), origin_xy.astype(np.float64))
 
 
 class BandBuilder:
     """Builds the bands view by view; they grow with the area that is seen, not with time."""
 
     def __init__(self) -> None:
-        self._grids = [GridBuilder() for _ in range(BANDS)]
+        self._scan = GridBuilder()
+        self._slabs = SlabBuilder()
 
     def add(self, view: View) -> None:
         """Take in a view that is placed in the map frame."""
         if view.scan is not None:
             T = view.T_map_laser
             ends = transform_xy(T, view.scan.points_xy)
-            self._grids[SCAN].insert_beams(T[:2, 3], ends, np.ones(len(ends), np.bool_))
-        panorama = panorama_of(view)
-        if panorama is None:
-            return
-        for band, ranges in ((ANY, panorama.obstacle_m), (TALL, panorama.tall_m)):
-            hit = ranges < TRUSTED_M
-            reach = np.where(hit, ranges, panorama.free_m if band == ANY else 0.0)
-            seen = (reach > 0) & (reach < TRUSTED_M)
-            self._grids[band].insert_beams(
-                panorama.center_xy, panorama.ends_xy(reach)[seen], hit[seen]
-            )
+            self._scan.insert_beams(T[:2, 3], ends, np.ones(len(ends), np.bool_))
+        if view.depth_m is not None:
+            self._slabs.insert(view)
 
     def bands(self) -> HeightBands:
-        """What was seen so far."""
-        grids = [builder.grid() for builder in self._grids]
-        known = [g for g in grids if np.isfinite(g.probability).any()]
-        if not known:
-            return HeightBands(np.full((BANDS, 1, 1), UNKNOWN, np.int8), np.zeros(2))
-        low = np.min([g.origin_xy for g in known], axis=0)
-        corners = [
-            np.round((np.array(g.origin_xy) - low) / RESOLUTION_M).astype(int) for g in known
+        """What was seen so far; one unknown cell where nothing was."""
+        grid = self._scan.grid()
+        scan = _states(np.nan_to_num(grid.probability - 0.5), np.isfinite(grid.probability))
+        slabs, first_cell = self._slabs.slabs()
+        corner = np.round(np.array(grid.origin_xy) / CELL_M).astype(np.int64)
+        parts = [
+            (at, grid_)
+            for at, grid_ in ((corner, scan[..., None]), (first_cell, slabs))
+            if (grid_ != UNKNOWN).any()
         ]
-        size = np.max(
-            [c + g.probability.shape[::-1] for c, g in zip(corners, known, strict=True)], axis=0
-        )
-        found = np.full((BANDS, size[1], size[0]), UNKNOWN, np.int8)
-        for band, grid in enumerate(grids):
-            if not np.isfinite(grid.probability).any():
-                continue
-            col, row = np.round((np.array(grid.origin_xy) - low) / RESOLUTION_M).astype(int)
-            rows, cols = grid.probability.shape
-            percent = np.nan_to_num(np.round(grid.probability * 100), nan=UNKNOWN)
-            found[band, row : row + rows, col : col + cols] = percent
-        return HeightBands(found, low)
+        if not parts:
+            return HeightBands(scan, np.full((1, 1, SLABS), UNKNOWN, np.int8), np.zeros(2))
+        low = np.min([at for at, _ in parts], axis=0)
+        cols, rows = np.max([at + g.shape[1::-1] for at, g in parts], axis=0) - low
+        found = [np.full((rows, cols, n), UNKNOWN, np.int8) for n in (1, SLABS)]
+        for at, part in parts:
+            col, row = at - low
+            whole = found[part.shape[2] != 1]
+            whole[row : row + part.shape[0], col : col + part.shape[1]] = part
+        return HeightBands(found[0][..., 0], found[1], low * CELL_M)
+
+
+def _states(log_odds: NDArray[np.floating], seen: NDArray[np.bool_]) -> NDArray[np.int8]:
+    states = np.where(log_odds > 0, STANDS, FREE)
+    return np.where(seen, states, UNKNOWN).astype(np.int8)

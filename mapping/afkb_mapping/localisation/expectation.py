@@ -1,4 +1,4 @@
-"""What a sensor would read at each place of a map where a robot may stand."""
+"""What a sensor would read at each place of a map where a robot may be."""
 
 from __future__ import annotations
 
@@ -7,98 +7,135 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
+from scipy.ndimage import binary_dilation, distance_transform_edt
 
 from afkb_mapping.kernels import kernel
-from afkb_mapping.localisation.bands import ANY, BANDS, SCAN, TALL, UNKNOWN, HeightBands
-from afkb_mapping.localisation.readings import BEARINGS
-from afkb_mapping.localisation.sensor_model import STEP_M, STEPS
-from afkb_mapping.occupancy import RESOLUTION_M
+from afkb_mapping.localisation.bands import FREE, STANDS, UNKNOWN, HeightBands
+from afkb_mapping.localisation.rays import CM, FARTHEST_M, ray_in_plane, ray_in_space
+from afkb_mapping.localisation.sensor_model import ELEVATIONS, LASER_ROW, ROWS, STEP_M, STEPS
+from afkb_mapping.localisation.slabs import CELL_M, SLAB_M, SLABS
+from afkb_mapping.panorama import STEP_OVER_M
 
-CELL_M = 2 * RESOLUTION_M
-"""Places to stand are tried this far apart."""
+PLACE_M = 2 * CELL_M
+"""Places are this far apart."""
+TURNS = 180
+"""Directions in which something is expected, and headings that are tried."""
 STANDS_FREE_M = 0.10
 """Half the width of the smallest robots: nobody stands nearer to a wall."""
+OVERHANG_M = 0.30
+"""A camera reaches so far over what the robot stands before, a bed or a table."""
+LOW_M, SHIN_M = (0.10, 1.0), (0.15, 0.45)
+"""Where a robot drives nothing stands at these heights; a laser looks at some of the second."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Expectation:
-    """Distances that are to be read, by place, band and direction.
+class Surroundings:
+    """How far from each cell the nearest thing stands, in `CM`, uint8 (at most 255).
 
-    - `distance_m` (BANDS, rows, cols): from each cell of the bands to what stands there.
-    - `places` (P, 2): row and column, in cells of `CELL_M`, of where a robot may stand.
-    - `index` (rows / 2, cols / 2): of the place in a cell, -1 for none.
-    - `steps` (P, BANDS, BEARINGS) uint8: distance in steps of `STEP_M`, at most `STEPS` - 1.
+    - `at_laser` (rows, cols): of what the laser meets. `in_space` (rows, cols, SLABS): of all.
+    - `places` (P, 2): row and column, in cells of `PLACE_M`, of where sensors may be; `index`
+      (rows / 2, cols / 2) their numbers, -1 for none; `stand` numbers of those where a base fits.
     """
 
     origin_xy: NDArray[np.float64]
-    distance_m: NDArray[np.float32]
+    at_laser: NDArray[np.uint8]
+    in_space: NDArray[np.uint8]
     places: NDArray[np.int64]
     index: NDArray[np.int32]
-    steps: NDArray[np.uint8]
+    stand: NDArray[np.int64]
 
 
-def expectation_of(bands: HeightBands) -> Expectation:
-    """What the map lets a robot expect; no places where none of it is known to be free."""
-    scan, any_ = bands.stands(SCAN), bands.stands(ANY) | bands.stands(SCAN)
-    has_scan = bool((bands.occupancy[SCAN] != UNKNOWN).any())
-    # a map made without a laser is held against a laser as best it can be
-    blocked = (scan if has_scan else any_, any_, bands.stands(TALL))
-    distance_m = np.stack([_distance(b) for b in blocked]).astype(np.float32)
-    free = _free(bands, SCAN) if has_scan else _free(bands, ANY)
-    room = distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1] * RESOLUTION_M > STANDS_FREE_M
-    rows, cols = (n // 2 for n in room.shape)
-    may_stand = room[: 2 * rows, : 2 * cols].reshape(rows, 2, cols, 2).any(axis=(1, 3))
-    places = np.argwhere(may_stand)
-    index = np.full((rows, cols), -1, np.int32)
-    index[may_stand] = np.arange(len(places))
-    return Expectation(
-        bands.origin_xy, distance_m, places, index, _ranges(distance_m, places.astype(np.int64))
+def surroundings_of(bands: HeightBands) -> Surroundings:
+    """What the map holds, as rays look at it; no places where none of it is known to be free."""
+    laser, depth = (bands.scan != UNKNOWN).any(), (bands.slabs != UNKNOWN).any()
+    solid = bands.slabs == STANDS
+    solid[..., : round(STEP_OVER_M / SLAB_M)] = False  # the floor
+    if not depth:  # what a laser meets is taken for walls
+        solid = np.repeat((bands.scan == STANDS)[..., None], SLABS, axis=2)
+    low, shin = (solid[..., round(a / SLAB_M) : round(b / SLAB_M)] for a, b in (LOW_M, SHIN_M))
+    at_laser = bands.scan == STANDS if laser else shin.any(axis=2)
+    seen_free = (bands.slabs[..., : round(LOW_M[1] / SLAB_M)] == FREE).any(axis=2)
+    free = bands.scan == FREE if laser else seen_free & ~low.any(axis=2)
+    room = distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1] * CELL_M
+    is_place = binary_dilation(_coarser(free), iterations=round(OVERHANG_M / PLACE_M))
+    fits = _coarser(room > STANDS_FREE_M)
+    places = np.argwhere(is_place).astype(np.int64)
+    index = np.full(is_place.shape, -1, np.int32)
+    index[is_place] = np.arange(len(places))
+    return Surroundings(
+        bands.origin_xy,
+        _distance(at_laser, (CELL_M, CELL_M)),
+        _distance(solid, (CELL_M, CELL_M, SLAB_M)),
+        places,
+        index,
+        np.flatnonzero(fits[is_place]),
     )
 
 
-def _free(bands: HeightBands, band: int) -> NDArray[np.bool_]:
-    occupancy = bands.occupancy[band]
-    free: NDArray[np.bool_] = (occupancy != UNKNOWN) & (occupancy < 50)
-    return free
+def _coarser(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    rows, cols = (n // 2 for n in cells.shape)
+    found: NDArray[np.bool_] = (
+        cells[: 2 * rows, : 2 * cols].reshape(rows, 2, cols, 2).any(axis=(1, 3))
+    )
+    return found
 
 
-def _distance(blocked: NDArray[np.bool_]) -> NDArray[np.float64]:
-    if not blocked.any():
-        return np.full(blocked.shape, STEPS * STEP_M)
-    distance: NDArray[np.float64] = distance_transform_edt(~blocked) * RESOLUTION_M
-    return distance
+def _distance(solid: NDArray[np.bool_], cell_m: tuple[float, ...]) -> NDArray[np.uint8]:
+    if not solid.any():
+        return np.full(solid.shape, 255, np.uint8)
+    apart = distance_transform_edt(~solid, sampling=cell_m)
+    return np.minimum(apart / CM, 255).astype(np.uint8)
+
+
+class Expectation:
+    """What is read all around from each place: by a laser, and by a camera at one height."""
+
+    def __init__(self, around: Surroundings, eye_m: float) -> None:
+        self.around = around
+        self.steps = np.zeros((len(around.places), ROWS, TURNS), np.uint8)
+        """(P, ROWS, TURNS): distance in steps of `STEP_M`, at most `STEPS` - 1."""
+        self._eye_m = eye_m
+        self._known: set[int] = set()
+
+    def know(self, rows: NDArray[np.int64]) -> None:
+        """Look along these rows, if that has not been done."""
+        for row in sorted(set(rows.tolist()) - self._known):
+            if row == LASER_ROW:
+                _look_in_plane(self.steps, self.around.at_laser, self.around.places)
+            else:
+                up = math.tan(ELEVATIONS[row - 1])
+                space, places = self.around.in_space, self.around.places
+                _look_in_space(self.steps, row, space, places, self._eye_m, up)
+            self._known.add(row)
 
 
 @kernel
-def _ranges(distance_m: NDArray[np.float32], places: NDArray[np.int64]) -> NDArray[np.uint8]:
-    out = np.empty((len(places), BANDS, BEARINGS), np.uint8)
+def _look_in_plane(
+    steps: NDArray[np.uint8], at_laser: NDArray[np.uint8], places: NDArray[np.int64]
+) -> None:
     for p in range(len(places)):
-        x, y = (places[p, 1] + 0.5) * CELL_M, (places[p, 0] + 0.5) * CELL_M
-        for k in range(BEARINGS):
-            angle = (k + 0.5) * 2 * math.pi / BEARINGS
-            for band in range(BANDS):
-                reach = ray(distance_m[band], x, y, math.cos(angle), math.sin(angle))
-                out[p, band, k] = min(int(reach / STEP_M + 0.5), STEPS - 1)
-    return out
+        x, y = (places[p, 1] + 0.5) * PLACE_M, (places[p, 0] + 0.5) * PLACE_M
+        for k in range(TURNS):
+            angle = (k + 0.5) * 2 * math.pi / TURNS
+            along_x, along_y = math.cos(angle), math.sin(angle)
+            reach = ray_in_plane(at_laser, x, y, along_x, along_y, FARTHEST_M)
+            steps[p, 0, k] = min(int(reach / STEP_M + 0.5), STEPS - 1)
 
 
 @kernel
-def ray(
-    distance_m: NDArray[np.float32], x: float, y: float, along_x: float, along_y: float
-) -> float:
-    """Distance, m, from a point (m, from the bands' corner) to what stands in a direction.
-
-    Sphere tracing: each step goes as far as nothing can stand.
-    """
-    reach, farthest = 0.0, STEPS * STEP_M
-    while reach < farthest:
-        j = int((x + along_x * reach) / RESOLUTION_M)
-        i = int((y + along_y * reach) / RESOLUTION_M)
-        if not (0 <= i < distance_m.shape[0] and 0 <= j < distance_m.shape[1]):
-            return farthest
-        apart = distance_m[i, j]
-        if apart <= 0:
-            return reach
-        reach += max(apart - RESOLUTION_M, 0.5 * RESOLUTION_M)
-    return farthest
+def _look_in_space(
+    steps: NDArray[np.uint8],
+    row: int,
+    in_space: NDArray[np.uint8],
+    places: NDArray[np.int64],
+    eye_m: float,
+    slope: float,
+) -> None:
+    flat = 1 / math.sqrt(1 + slope * slope)
+    for p in range(len(places)):
+        x, y = (places[p, 1] + 0.5) * PLACE_M, (places[p, 0] + 0.5) * PLACE_M
+        for k in range(TURNS):
+            angle = (k + 0.5) * 2 * math.pi / TURNS
+            along_x, along_y = flat * math.cos(angle), flat * math.sin(angle)
+            reach = ray_in_space(in_space, x, y, eye_m, along_x, along_y, flat * slope, FARTHEST_M)
+            steps[p, row, k] = min(int(reach / STEP_M + 0.5), STEPS - 1)

@@ -10,14 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.localisation.bands import HeightBands
-from afkb_mapping.localisation.expectation import expectation_of
+from afkb_mapping.localisation.candidates import Candidate
+from afkb_mapping.localisation.expectation import surroundings_of
 from afkb_mapping.localisation.readings import Readings
-from afkb_mapping.localisation.search import Candidate, Search
+from afkb_mapping.localisation.search import Search
+from afkb_mapping.localisation.sensor_model import (
+    HIT,
+    INDEPENDENT_DEPTH,
+    INDEPENDENT_LASER,
+    LASER_ROW,
+)
 
 Array = NDArray[np.float64]
 
-INDEPENDENT = 0.12
-"""Neighbouring readings err together: so much of one counts as evidence of its own."""
 ELSEWHERE = -0.75
 """Mean log-likelihood of a reading at the likeliest pose in a place that is not in the map."""
 SURE = 0.9
@@ -46,7 +51,7 @@ class Localiser:
     """Tells where views were taken in one map, with no idea of where that might be."""
 
     def __init__(self, bands: HeightBands) -> None:
-        self._search = Search.of(expectation_of(bands))
+        self._search = Search(surroundings_of(bands))
 
     def locate(self, views: Sequence[Readings]) -> Located:
         """Where the base of the last of some views stands.
@@ -57,7 +62,7 @@ class Localiser:
         if not found:
             return Located(True, math.nan, math.nan, math.nan, 0.0, np.full((3, 3), math.nan))
         best = found[0]
-        probability = _probability(found, sum(len(view) for view in views))
+        probability = _probability(found, sum(_elsewhere(view) for view in views))
         return Located(
             probability < SURE,
             best.x,
@@ -79,12 +84,19 @@ class Localiser:
                 around.append(moved)
         values = self._search.log_likelihood_at(np.array(around), readings)
         fall = 2 * values[0] - values[1::2] - values[2::2]
-        information = INDEPENDENT * np.maximum(fall, 1e-3) / steps**2
+        information = np.maximum(fall, 1e-3) / steps**2
         return np.diag(1 / information + np.square(LEAST_SIGMAS))
 
 
-def _probability(found: Sequence[Candidate], count: int) -> float:
+def _elsewhere(readings: Readings) -> float:
+    """Log-likelihood of what was read, if it was read in a place that the map doesn't hold."""
+    hits = readings.row[readings.kind == HIT]
+    laser = int((hits == LASER_ROW).sum())
+    return ELSEWHERE * (INDEPENDENT_LASER * laser + INDEPENDENT_DEPTH * (len(hits) - laser))
+
+
+def _probability(found: Sequence[Candidate], elsewhere: float) -> float:
     """Of the best candidate among the others, and a place that isn't in the map."""
-    logs = np.array([c.log_likelihood for c in found] + [ELSEWHERE * count]) * INDEPENDENT
+    logs = np.array([*(c.log_likelihood for c in found), elsewhere])
     weights = np.exp(logs - logs.max())
     return float(weights[0] / weights.sum())

@@ -3,63 +3,67 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb_mapping.localisation.expectation import CELL_M, Expectation
-from afkb_mapping.localisation.readings import BEARINGS, Readings, joined
-from afkb_mapping.localisation.search_kernels import BEARING_STEP, at_poses, scores_of
-from afkb_mapping.localisation.sensor_model import STEP_M, STEPS, log_likelihoods
+from afkb_mapping.localisation.candidates import Candidate, best_apart, peaks_of
+from afkb_mapping.localisation.expectation import PLACE_M, TURNS, Expectation, Surroundings
+from afkb_mapping.localisation.readings import Readings, joined
+from afkb_mapping.localisation.search_kernels import at_poses, scores_of
+from afkb_mapping.localisation.sensor_model import (
+    INDEPENDENT_DEPTH,
+    LASER_ROW,
+    STEP_M,
+    STEPS,
+    log_likelihoods,
+)
 
 Array = NDArray[np.float64]
 
-APART_M, APART_RAD = 0.4, math.radians(15)
-"""Candidates nearer to each other than both of these are one."""
 COARSE_SIGMA_M = 0.2
 """Places are first tried this far apart."""
 PLACE_STEP = 2
-"""... in every second cell, with every other reading."""
+"""... in every second cell."""
+OFF_MAP = -1.5
+"""Log-likelihood of each reading of a sensor that would stand in something."""
+FIRST_READINGS, CLOSER_READINGS, EXACT_READINGS = 150, 100, 400
+"""So many readings of a question tell in each round, the more the fewer candidates are left."""
 TRIED, CANDIDATES = 60, 12
 """So many of the first round are looked at closely, and so many of those are made exact."""
-CLOSER = ((0.1, 2.0), (0.05, 1.0))
-EXACT = ((0.02, 0.5), (0.01, 0.25))
-"""Steps (m, degrees) in which a candidate climbs to its peak."""
-MOST_STEPS = 6
+CLOSER = ((0.1, 5.0),)
+EXACT = ((0.05, 2.5), (0.02, 1.0), (0.01, 0.3))
+"""Steps (m, degrees) in which a candidate climbs to its peak: both move what is 1 m off alike, so
+that it may circle what it looks at; short steps go along the axes only."""
+MOST_STEPS = 10
 ODOMETRY_SIGMAS = (0.05, 0.05, math.radians(2.0))
 """By how much (m, m, rad) odometry errs between views that are asked together: two per cent of a
 turn of 90°, a few of a step."""
+EYE_STEP_M = 0.05
+"""Cameras whose heights differ by less expect the same."""
+MOST_EYES = 4
+"""Heights of cameras for which expectations are kept."""
 
 
-@dataclass(frozen=True, slots=True)
-class Candidate:
-    """A pose of the base in the map frame (m, rad) and the log-likelihood of all readings there."""
-
-    x: float
-    y: float
-    yaw: float
-    log_likelihood: float
-
-    def is_near(self, other: Candidate) -> bool:
-        """Whether both are one place and heading."""
-        turn = abs((self.yaw - other.yaw + math.pi) % (2 * math.pi) - math.pi)
-        return math.hypot(self.x - other.x, self.y - other.y) < APART_M and turn < APART_RAD
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Search:
-    """A map as a search looks at it; tables of `log_likelihoods`, coarse and fine."""
+@dataclass(slots=True, eq=False)
+class _Eyes:
+    """What a camera at one height expects; tables of `log_likelihoods`, coarse and fine."""
 
     expectation: Expectation
     coarse: NDArray[np.float32]
     fine: NDArray[np.float32]
 
-    @classmethod
-    def of(cls, expectation: Expectation) -> Search:
-        """The search in a map that lets expect this."""
-        return cls(expectation, log_likelihoods(COARSE_SIGMA_M), log_likelihoods())
+
+class Search:
+    """A map as a search looks at it."""
+
+    def __init__(self, around: Surroundings) -> None:
+        self._around = around
+        self._eyes: dict[int, _Eyes] = {}
+        places = around.places[around.stand]
+        self._tried = around.stand[(places % PLACE_STEP == 0).all(axis=1)]
 
     def candidates(self, views: Sequence[Readings]) -> list[Candidate]:
         """The likeliest poses of the last view's base, best first, none near a better one.
@@ -68,50 +72,59 @@ class Search:
         was read.
         """
         readings = joined(views)
-        if not len(readings) or not len(self.expectation.places):
+        if not len(readings) or not len(self._tried):
             return []
-        near = [self._climbed(c, readings, CLOSER) for c in self._first_round(readings)]
-        best = _apart(sorted(near, key=lambda c: -c.log_likelihood), CANDIDATES)
-        exact = [self._climbed(c, readings, EXACT) for c in best]
+        some = readings.every(math.ceil(len(readings) / CLOSER_READINGS))
+        near = [self._climbed(c, some, CLOSER) for c in self._first_round(readings)]
+        most = readings.every(math.ceil(len(readings) / EXACT_READINGS))
+        exact = [self._climbed(c, most, EXACT) for c in best_apart(near, CANDIDATES)]
         if len(views) > 1:
             exact = [self._relaxed(c, views) for c in exact]
-        return _apart(sorted(exact, key=lambda c: -c.log_likelihood), CANDIDATES)
+        else:
+            values = self.log_likelihood_at(np.array([c.pose for c in exact]), readings)
+            exact = [
+                replace(c, log_likelihood=v) for c, v in zip(exact, values.tolist(), strict=True)
+            ]
+        return best_apart(exact, CANDIDATES)
+
+    def _eyes_of(self, readings: Readings) -> _Eyes:
+        seen = readings.origin[readings.row != LASER_ROW]
+        eye_m = float(readings.origins_xyz[seen[0], 2]) if len(seen) else 0.0
+        step = round(eye_m / EYE_STEP_M)
+        if step not in self._eyes:
+            if len(self._eyes) == MOST_EYES:
+                self._eyes.pop(next(iter(self._eyes)))
+            height = step * EYE_STEP_M
+            self._eyes[step] = _Eyes(
+                Expectation(self._around, height),
+                log_likelihoods(height, COARSE_SIGMA_M),
+                log_likelihoods(height),
+            )
+        return self._eyes[step]
 
     def _first_round(self, readings: Readings) -> list[Candidate]:
-        known = self.expectation
-        tried = np.flatnonzero((known.places % PLACE_STEP == 0).all(axis=1))
-        some = np.arange(0, len(readings), 2 if len(readings) > BEARINGS // 6 else 1)
+        eyes = self._eyes_of(readings)
+        eyes.expectation.know(readings.row)
+        some = readings.every(math.ceil(len(readings) / FIRST_READINGS))
         scores = scores_of(
-            tried,
-            known.places,
-            known.index,
-            known.steps,
-            readings.origins_xy,
-            readings.origin[some],
-            np.floor(readings.bearing[some] / (2 * math.pi) * BEARINGS).astype(np.int64) % BEARINGS,
-            _in_steps(readings.range_m[some]),
-            readings.band[some],
-            readings.kind[some],
-            self.coarse,
+            self._tried,
+            self._around.places,
+            self._around.index,
+            eyes.expectation.steps,
+            some.origins_xyz,
+            some.origin,
+            np.floor(some.bearing / math.tau * TURNS).astype(np.int64) % TURNS,
+            some.row,
+            _lines(some, eyes.coarse),
+            OFF_MAP * INDEPENDENT_DEPTH,
         )
-        flat = scores.ravel()
-        most = min(TRIED * BEARINGS, flat.size)
-        best = np.argpartition(-flat, most - 1)[:most]
-        best = best[np.lexsort((best, -flat[best]))]
-        return _apart((self._place(n, tried, scores) for n in best.tolist()), TRIED)
-
-    def _place(
-        self, number: int, tried: NDArray[np.intp], scores: NDArray[np.float32]
-    ) -> Candidate:
-        which, turn = divmod(number, scores.shape[1])
-        row, col = self.expectation.places[tried[which]]
-        x, y = self.expectation.origin_xy + (np.array([col, row]) + 0.5) * CELL_M
-        yaw = turn * BEARING_STEP * 2 * math.pi / BEARINGS
-        return Candidate(float(x), float(y), yaw, float(scores[which, turn]))
+        rows_cols = self._around.places[self._tried]
+        places_xy = self._around.origin_xy + (rows_cols[:, ::-1] + 0.5) * PLACE_M
+        return peaks_of(scores, places_xy, TRIED)
 
     def _relaxed(self, start: Candidate, views: Sequence[Readings]) -> Candidate:
         """Each view where it fits best, as far as odometry errs; the pose of the last."""
-        found = [self._climbed(start, view, CLOSER[1:] + EXACT[:1], True) for view in views]
+        found = [self._climbed(start, view, EXACT[:2], is_held=True) for view in views]
         return replace(found[-1], log_likelihood=sum(c.log_likelihood for c in found))
 
     def _climbed(
@@ -122,50 +135,47 @@ class Search:
         is_held: bool = False,
     ) -> Candidate:
         """The highest likelihood near a candidate; held near it by odometry, or not."""
-        first = np.array([start.x, start.y, start.yaw])
-        pose, best = first, -math.inf
+        pose, best = start.pose, -math.inf
+        lines = _lines(readings, self._eyes_of(readings).fine)
         for step_m, step_deg in rounds:
             steps = np.array([step_m, step_m, math.radians(step_deg)])
             for _ in range(MOST_STEPS):
-                around = pose + _AROUND * steps
-                found = self.log_likelihood_at(around, readings)
+                around = pose + (_AROUND if step_m >= EXACT[0][0] else _ALONG_AXES) * steps
+                found = self._at(around, readings, lines)
                 if is_held:
-                    found -= 0.5 * np.square((around - first) / ODOMETRY_SIGMAS).sum(axis=1)
+                    off = (around - start.pose) / ODOMETRY_SIGMAS
+                    found -= 0.5 * np.square(off).sum(axis=1)
                 top = int(np.argmax(found))
                 best, pose = float(found[top]), around[top]
-                if top == len(_AROUND) // 2:
+                if top == 0:
                     break
-        yaw = math.atan2(math.sin(pose[2]), math.cos(pose[2]))
-        return Candidate(float(pose[0]), float(pose[1]), yaw, best)
+        return Candidate(
+            float(pose[0]), float(pose[1]), math.remainder(float(pose[2]), math.tau), best
+        )
 
     def log_likelihood_at(self, poses: Array, readings: Readings) -> Array:
         """(N,) summed log-likelihood with the base at poses (N, 3): x, y (m), yaw (rad)."""
+        return self._at(poses, readings, _lines(readings, self._eyes_of(readings).fine))
+
+    def _at(self, poses: Array, readings: Readings, lines: NDArray[np.float32]) -> Array:
         return at_poses(
-            poses - np.array([*self.expectation.origin_xy, 0.0]),
-            self.expectation.distance_m,
-            readings.origins_xy,
+            poses - np.array([*self._around.origin_xy, 0.0]),
+            self._around.at_laser,
+            self._around.in_space,
+            readings.origins_xyz,
             readings.origin,
-            readings.bearing,
-            _in_steps(readings.range_m),
-            readings.band,
-            readings.kind,
-            self.fine,
+            readings.rays(),
+            readings.range_m,
+            readings.row,
+            lines,
         )
 
 
-_AROUND = np.array([[i, j, k] for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)])
+_AROUND = np.array([[i, j, k] for i in (0, -1, 1) for j in (0, -1, 1) for k in (0, -1, 1)])
+_ALONG_AXES = np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
 
 
-def _in_steps(range_m: Array) -> NDArray[np.int64]:
-    return np.clip(np.round(range_m / STEP_M), 0, STEPS - 1).astype(np.int64)
-
-
-def _apart(ranked: Iterable[Candidate], most: int) -> list[Candidate]:
-    """The first ones of which none is near an earlier one."""
-    kept: list[Candidate] = []
-    for candidate in ranked:
-        if not any(candidate.is_near(better) for better in kept):
-            kept.append(candidate)
-            if len(kept) == most:
-                break
-    return kept
+def _lines(readings: Readings, table: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(N, STEPS): log-likelihood of each reading, by what is expected."""
+    read = np.clip(np.round(readings.range_m / STEP_M), 0, STEPS - 1).astype(np.int64)
+    return table[readings.row, readings.kind, read]

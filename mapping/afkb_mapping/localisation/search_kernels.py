@@ -8,51 +8,50 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
-from afkb_mapping.localisation.expectation import CELL_M, ray
-from afkb_mapping.localisation.readings import BEARINGS
-from afkb_mapping.localisation.sensor_model import STEP_M, STEPS
+from afkb_mapping.localisation.expectation import PLACE_M, TURNS
+from afkb_mapping.localisation.rays import ray_in_plane, ray_in_space
+from afkb_mapping.localisation.sensor_model import LASER_ROW, STEP_M, STEPS
 
 Array = NDArray[np.float64]
 
-BEARING_STEP = 2
-"""Headings are first tried two degrees apart."""
-OFF_MAP = -1.5
-"""Log-likelihood of each reading of a sensor that would stand in a wall."""
+BEYOND_M = 0.8
+"""So far behind a reading all expectations are alike: four standard deviations at the farthest."""
 
 
 @kernel
 def scores_of(
-    tried: NDArray[np.intp],
+    tried: NDArray[np.int64],
     places: NDArray[np.int64],
     index: NDArray[np.int32],
     steps: NDArray[np.uint8],
-    origins_xy: Array,
+    origins_xyz: Array,
     origin: NDArray[np.int64],
     bearing: NDArray[np.int64],
-    reading: NDArray[np.int64],
-    band: NDArray[np.int64],
-    kind: NDArray[np.int64],
-    table: NDArray[np.float32],
+    row: NDArray[np.int64],
+    lines: NDArray[np.float32],
+    off_map: float,
 ) -> NDArray[np.float32]:
-    """(T, turns): summed log-likelihood with the base at each place tried, turned all around."""
-    turns = BEARINGS // BEARING_STEP
-    scores = np.zeros((len(tried), turns), np.float32)
-    at = np.empty(len(origins_xy), np.int64)
-    for turn in range(turns):
-        ahead = turn * BEARING_STEP
-        yaw = ahead * 2 * math.pi / BEARINGS
-        for p in range(len(tried)):
-            _stand(at, places[tried[p]], index, origins_xy, math.cos(yaw), math.sin(yaw))
+    """(T, TURNS): summed log-likelihood with the base at each place tried, turned all around.
+
+    `bearing`: (N,) in turns; `lines` (N, STEPS): log-likelihood of each reading by what is
+    expected; `off_map`: that of one whose sensor would stand in something.
+    """
+    scores = np.zeros((len(tried), TURNS), np.float32)
+    at = np.empty(len(origins_xyz), np.int64)
+    for p in range(len(tried)):
+        for turn in range(TURNS):
+            yaw = turn * 2 * math.pi / TURNS
+            _stand(at, places[tried[p]], index, origins_xyz, math.cos(yaw), math.sin(yaw))
             total = np.float32(0)
             for k in range(len(bearing)):
                 q = at[origin[k]]
                 if q < 0:
-                    total += np.float32(OFF_MAP)
+                    total += np.float32(off_map)
                     continue
-                b = bearing[k] + ahead
-                if b >= BEARINGS:
-                    b -= BEARINGS
-                total += table[band[k], kind[k], reading[k], steps[q, band[k], b]]
+                b = bearing[k] + turn
+                if b >= TURNS:
+                    b -= TURNS
+                total += lines[k, steps[q, row[k], b]]
             scores[p, turn] = total
     return scores
 
@@ -62,15 +61,15 @@ def _stand(
     at: NDArray[np.int64],
     place: NDArray[np.int64],
     index: NDArray[np.int32],
-    origins_xy: Array,
+    origins_xyz: Array,
     c: float,
     s: float,
 ) -> None:
-    """Set the place of each sensor, -1 where nobody can stand, of a base that stands at a place."""
-    for k in range(len(origins_xy)):
-        x, y = origins_xy[k, 0], origins_xy[k, 1]
-        i = place[0] + math.floor((s * x + c * y) / CELL_M + 0.5)
-        j = place[1] + math.floor((c * x - s * y) / CELL_M + 0.5)
+    """Set the place of each sensor, -1 where nothing is free, of a base that stands at a place."""
+    for k in range(len(origins_xyz)):
+        x, y = origins_xyz[k, 0], origins_xyz[k, 1]
+        i = place[0] + math.floor((s * x + c * y) / PLACE_M + 0.5)
+        j = place[1] + math.floor((c * x - s * y) / PLACE_M + 0.5)
         inside = 0 <= i < index.shape[0] and 0 <= j < index.shape[1]
         at[k] = index[i, j] if inside else -1
 
@@ -78,30 +77,31 @@ def _stand(
 @kernel
 def at_poses(
     poses: Array,
-    distance_m: NDArray[np.float32],
-    origins_xy: Array,
+    at_laser: NDArray[np.uint8],
+    in_space: NDArray[np.uint8],
+    origins_xyz: Array,
     origin: NDArray[np.int64],
-    bearing: Array,
-    reading: NDArray[np.int64],
-    band: NDArray[np.int64],
-    kind: NDArray[np.int64],
-    table: NDArray[np.float32],
+    rays: Array,
+    range_m: Array,
+    row: NDArray[np.int64],
+    lines: NDArray[np.float32],
 ) -> Array:
-    """(N,): summed log-likelihood with the base at each pose: x, y (m, from the corner), yaw."""
+    """(N,): summed log-likelihood with the base at each pose: x, y (m, from the corner), yaw.
+
+    `rays`: (N, 3) unit vectors in the base frame.
+    """
     found = np.zeros(len(poses))
     for p in range(len(poses)):
         x, y, yaw = poses[p]
         c, s = math.cos(yaw), math.sin(yaw)
-        for k in range(len(bearing)):
-            ox, oy = origins_xy[origin[k], 0], origins_xy[origin[k], 1]
-            angle = bearing[k] + yaw
-            reach = ray(
-                distance_m[band[k]],
-                x + c * ox - s * oy,
-                y + s * ox + c * oy,
-                math.cos(angle),
-                math.sin(angle),
-            )
-            step = min(int(reach / STEP_M + 0.5), STEPS - 1)
-            found[p] += table[band[k], kind[k], reading[k], step]
+        for k in range(len(row)):
+            ox, oy, oz = origins_xyz[origin[k]]
+            x0, y0 = x + c * ox - s * oy, y + s * ox + c * oy
+            dx, dy = c * rays[k, 0] - s * rays[k, 1], s * rays[k, 0] + c * rays[k, 1]
+            farthest = range_m[k] + BEYOND_M
+            if row[k] == LASER_ROW:
+                reach = ray_in_plane(at_laser, x0, y0, dx, dy, farthest)
+            else:
+                reach = ray_in_space(in_space, x0, y0, oz, dx, dy, rays[k, 2], farthest)
+            found[p] += lines[k, min(int(reach / STEP_M + 0.5), STEPS - 1)]
     return found

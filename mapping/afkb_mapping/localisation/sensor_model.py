@@ -7,39 +7,55 @@ to see through what the map has, it must have gone, and walls never do.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb_mapping.localisation.bands import ANY, BANDS, SCAN, TALL
-
 HIT, CLEAR = 0, 1
-FARTHEST_M = 6.0
+FARTHEST_M = 5.0
 """Readings beyond are too noisy (depth) or too often cut off (laser) to tell places apart."""
 STEP_M = 0.05
 STEPS = int((FARTHEST_M + 2.0) / STEP_M)
 """What is expected is known up to 2 m beyond the farthest reading."""
-SIGMA_M, SIGMA_PER_M = 0.10, 0.02
+SIGMA_M, SIGMA_PER_M = 0.08, 0.02
 """Standard deviation of reading less expectation: a cell or two of the map, and a degree."""
-NEARER = {SCAN: 0.20, ANY: 0.25, TALL: 0.10}
+LASER_ROW = 0
+"""Readings come in rows: that of a laser, then one for each elevation of a camera's rays."""
+ELEVATIONS = np.radians(np.arange(-60.0, 31.0, 6.0))
+"""Of a camera's rays, above the horizon; steps that a table's edge at 2 m spans."""
+ROWS = 1 + len(ELEVATIONS)
+TALL_M = 1.1
+"""What stands higher is a wall or a wardrobe; seats, tables, beds and chairs' backs end below."""
+NEARER_LASER, NEARER_LOW, NEARER_TALL = 0.20, 0.20, 0.10
 """Likelihood, over that of agreeing, of meeting something where the map has nothing: what a person
 or a chair does; wardrobes come seldom."""
-BEYOND = {SCAN: 0.08, ANY: 0.03, TALL: 0.10}
+BEYOND_LASER, BEYOND_LOW, BEYOND_TALL = 0.08, 0.05, 0.02
 """... of looking through what the map has. A laser at shin height looks past thin legs."""
+INDEPENDENT_LASER, INDEPENDENT_DEPTH = 0.12, 0.15
+"""Neighbouring readings err together: so much of one counts as evidence of its own."""
 
 
-def log_likelihoods(sigma_m: float = SIGMA_M) -> NDArray[np.float32]:
-    """(BANDS, 2, STEPS, STEPS): by band, kind, reading and expectation, both in steps of `STEP_M`.
+def log_likelihoods(eye_m: float, sigma_m: float = SIGMA_M) -> NDArray[np.float32]:
+    """(ROWS, 2, STEPS, STEPS): by row, kind, reading and expectation, both in steps of `STEP_M`.
 
-    0 where they agree. `sigma_m`: standard deviation of a reading nearby.
+    0 where they agree. `eye_m`: height of the camera above the floor; `sigma_m`: standard
+    deviation of a reading nearby.
     """
     read = np.arange(STEPS)[:, None] * STEP_M
     expected = np.arange(STEPS)[None] * STEP_M
-    sigma = sigma_m + SIGMA_PER_M * expected
-    agreement = np.exp(-0.5 * ((read - expected) / sigma) ** 2)
-    table = np.empty((BANDS, 2, STEPS, STEPS), np.float32)
-    for band in range(BANDS):
-        least = np.where(read < expected, NEARER[band], BEYOND[band])
-        table[band, HIT] = np.log(least + (1 - least) * agreement)
+    agreement = np.exp(-0.5 * ((read - expected) / (sigma_m + SIGMA_PER_M * expected)) ** 2)
+    table = np.empty((ROWS, 2, STEPS, STEPS), np.float32)
+    for row in range(ROWS):
+        if row == LASER_ROW:
+            nearer, beyond, weight = NEARER_LASER, BEYOND_LASER, INDEPENDENT_LASER
+        else:
+            up = math.sin(ELEVATIONS[row - 1])
+            nearer = np.where(eye_m + up * read > TALL_M, NEARER_TALL, NEARER_LOW)
+            beyond = np.where(eye_m + up * expected > TALL_M, BEYOND_TALL, BEYOND_LOW)
+            weight = INDEPENDENT_DEPTH
+        least = np.where(read < expected, nearer, beyond)
+        table[row, HIT] = weight * np.log(least + (1 - least) * agreement)
         free = np.where(read < expected, 1.0, agreement)
-        table[band, CLEAR] = np.log(BEYOND[band] + (1 - BEYOND[band]) * free)
+        table[row, CLEAR] = weight * np.log(beyond + (1 - beyond) * free)
     return table
