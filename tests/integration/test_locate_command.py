@@ -12,6 +12,7 @@ from afkb.cli.app import build_cli
 from afkb.plugins.host import PluginHost
 
 WORLD = "world:paper_home"
+pytestmark = pytest.mark.xdist_group("integration")
 
 
 def locate(*arguments):

@@ -13,7 +13,8 @@ from afkb_mapping.kernels import kernel
 from afkb_mapping.localisation.bands import FREE, STANDS, UNKNOWN, HeightBands
 from afkb_mapping.localisation.rays import CM, FARTHEST_M, ray_in_plane, ray_in_space
 from afkb_mapping.localisation.sensor_model import ELEVATIONS, LASER_ROW, ROWS, STEP_M, STEPS
-from afkb_mapping.localisation.slabs import CELL_M, SLAB_M, SLABS
+from afkb_mapping.localisation.slabs import SLAB_M, SLABS
+from afkb_mapping.occupancy import RESOLUTION_M as CELL_M
 from afkb_mapping.panorama import STEP_OVER_M
 
 PLACE_M = 2 * CELL_M
@@ -53,9 +54,9 @@ def surroundings_of(bands: HeightBands) -> Surroundings:
     if not depth:  # what a laser meets is taken for walls
         solid = np.repeat((bands.scan == STANDS)[..., None], SLABS, axis=2)
     low, shin = (solid[..., round(a / SLAB_M) : round(b / SLAB_M)] for a, b in (LOW_M, SHIN_M))
-    at_laser = bands.scan == STANDS if laser else shin.any(axis=2)
+    at_laser = np.asarray(bands.scan == STANDS if laser else shin.any(axis=2), np.bool_)
     seen_free = (bands.slabs[..., : round(LOW_M[1] / SLAB_M)] == FREE).any(axis=2)
-    free = bands.scan == FREE if laser else seen_free & ~low.any(axis=2)
+    free = np.asarray(bands.scan == FREE if laser else seen_free & ~low.any(axis=2), np.bool_)
     room = distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1] * CELL_M
     is_place = binary_dilation(_coarser(free), iterations=round(OVERHANG_M / PLACE_M))
     fits = _coarser(room > STANDS_FREE_M)
@@ -74,17 +75,16 @@ def surroundings_of(bands: HeightBands) -> Surroundings:
 
 def _coarser(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
     rows, cols = (n // 2 for n in cells.shape)
-    found: NDArray[np.bool_] = (
-        cells[: 2 * rows, : 2 * cols].reshape(rows, 2, cols, 2).any(axis=(1, 3))
-    )
-    return found
+    blocks = cells[: 2 * rows, : 2 * cols].reshape(rows, 2, cols, 2)
+    return np.asarray(blocks.any(axis=(1, 3)), np.bool_)
 
 
 def _distance(solid: NDArray[np.bool_], cell_m: tuple[float, ...]) -> NDArray[np.uint8]:
     if not solid.any():
         return np.full(solid.shape, 255, np.uint8)
     apart = distance_transform_edt(~solid, sampling=cell_m)
-    return np.minimum(apart / CM, 255).astype(np.uint8)
+    kept: NDArray[np.uint8] = np.minimum(apart / CM, 255).astype(np.uint8)
+    return kept
 
 
 class Expectation:

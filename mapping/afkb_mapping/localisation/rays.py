@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
 from afkb_mapping.localisation.sensor_model import STEP_M, STEPS
-from afkb_mapping.localisation.slabs import CELL_M, SLAB_M
+from afkb_mapping.localisation.slabs import SLAB_M
+from afkb_mapping.occupancy import RESOLUTION_M as CELL_M
 from afkb_mapping.panorama import STEP_OVER_M
 
 CM = 0.01

@@ -32,7 +32,7 @@ NEARER_LASER, NEARER_LOW, NEARER_TALL = 0.20, 0.20, 0.10
 or a chair does; wardrobes come seldom."""
 BEYOND_LASER, BEYOND_LOW, BEYOND_TALL = 0.08, 0.05, 0.02
 """... of looking through what the map has. A laser at shin height looks past thin legs."""
-INDEPENDENT_LASER, INDEPENDENT_DEPTH = 0.12, 0.15
+INDEPENDENT_LASER, INDEPENDENT_DEPTH = 0.06, 0.25
 """Neighbouring readings err together: so much of one counts as evidence of its own."""
 
 
@@ -47,9 +47,9 @@ def log_likelihoods(eye_m: float, sigma_m: float = SIGMA_M) -> NDArray[np.float3
     agreement = np.exp(-0.5 * ((read - expected) / (sigma_m + SIGMA_PER_M * expected)) ** 2)
     table = np.empty((ROWS, 2, STEPS, STEPS), np.float32)
     for row in range(ROWS):
-        if row == LASER_ROW:
-            nearer, beyond, weight = NEARER_LASER, BEYOND_LASER, INDEPENDENT_LASER
-        else:
+        nearer, beyond = np.full_like(read, NEARER_LASER), np.full_like(expected, BEYOND_LASER)
+        weight = INDEPENDENT_LASER
+        if row != LASER_ROW:
             up = math.sin(ELEVATIONS[row - 1])
             nearer = np.where(eye_m + up * read > TALL_M, NEARER_TALL, NEARER_LOW)
             beyond = np.where(eye_m + up * expected > TALL_M, BEYOND_TALL, BEYOND_LOW)

@@ -50,7 +50,8 @@ class SlabBuilder:
         col, row = low - self._first_cell
         step = max(1, round(intrinsics_of(view)[0] / STEP_PX))
         verdict = np.zeros((size, size, SLABS), np.int8)
-        _trace(verdict, view.depth_m, intrinsics_of(view), T, low * CELL_M, step)
+        corner_xy = np.asarray(low * CELL_M, np.float64)
+        _trace(verdict, view.depth_m, intrinsics_of(view), T, corner_xy, step)
         _update(self._log_odds[row : row + size, col : col + size], verdict)
 
     def slabs(self) -> tuple[NDArray[np.int8], NDArray[np.int64]]:
