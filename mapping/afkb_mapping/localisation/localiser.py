@@ -23,7 +23,7 @@ from afkb_mapping.localisation.sensor_model import (
 
 Array = NDArray[np.float64]
 
-ELSEWHERE_LASER, ELSEWHERE_DEPTH = -1.3, -0.55
+ELSEWHERE_LASER, ELSEWHERE_DEPTH = -1.3, -0.75
 """Mean log-likelihood of a hit at the likeliest pose in a home that is not in the map, of a laser
 and of depth; measured in two homes, each asked in the other's map and, for what it costs, in its
 own. A laser's is so low that most of its beams may be blind: its readings all around fit one pose
