@@ -171,7 +171,7 @@ def _voxels(views: list[tuple[View, Array]], folder: Path) -> dict[str, Any]:
         points = back_project(view.depth_m, view.camera).reshape(-1, 3)
         near = transform(T, points[points[:, 2] < FARTHEST_M].astype(np.float64))
         one = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(near))
-        cloud = (cloud + one.voxel_down_sample(VOXEL_M)).voxel_down_sample(VOXEL_M)
+        cloud += one.voxel_down_sample(VOXEL_M)
     grid = o3d.geometry.VoxelGrid.create_from_point_cloud(cloud, VOXEL_M)
     seconds = time.process_time() - start
     o3d.io.write_voxel_grid(str(folder / "voxels.ply"), grid)
