@@ -46,8 +46,8 @@ def T_map_source_of_visit(folder: Path, selection: Selection, T_level_source: Ar
     if views <= TOGETHER and answers:
         return answers[0]
     raise SourceError(
-        f"its first {views} views can't be located in {folder}: another place, or too much of it "
-        "has changed; map it on its own with --out, or begin elsewhere with --start"
+        f"the recording's first {views} views can't be located in {folder}: another place, or too "
+        "much has changed; map it on its own with --out, or begin elsewhere with --start"
     )
 
 
