@@ -69,6 +69,7 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
         folder = args.map or _mapped(host, args.mapped, Path(scratch) / "map")
         bands = HeightBands.from_bytes((folder / "state" / STATE_FILE).read_bytes())
     views, mapped_xy = _views(host, args.asked, args.mapped), _places(args.mapped)
+    elsewhere = _views(host, args.elsewhere, args.mapped)
     ask, stride, more = _asking(Localiser(bands)), args.stride, args.peer_stride
     return {
         "senses": {
@@ -87,9 +88,7 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
         },
         "near": _by_distance(_answers(ask, views, _depth, 1, stride), mapped_xy),
         "elsewhere": {
-            name: _shares(
-                _answers(ask, _views(host, args.elsewhere, args.mapped), sense, together, more)
-            )
+            name: _shares(_answers(ask, elsewhere, sense, together, more))
             for name, (sense, together) in SENSES.items()
         },
     }
