@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb.errors import BadFrame
 from afkb.flow import View
 from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_mapping.lost import Lost
@@ -32,6 +33,11 @@ NEAR_M = 1.0
 UNMATCHED_VIEWS = 3
 """After this many unmatched views in a row, none of which looks through the map, odometry is
 believed: what was mapped here has changed."""
+IMAGES_IN_A_ROW = 2
+"""So many depth images in a row must contradict the map before the robot is lost: where a tour has
+few views, one by itself often does after some drift. A scan, which sees all round, needs no second.
+"""
+CONTRADICTED = "it looks through what is mapped where odometry has it"
 RADIUS_M = 15.0
 """Map within this distance of the robot takes part in a match, whatever the sensor's range."""
 
@@ -66,7 +72,7 @@ class ScanRegistration:
         self._covariance = np.zeros((3, 3))
         self._drift = np.zeros((3, 3))
         self._scans, self._images = SurfaceMap(), SurfaceMap()
-        self._unmatched = 0
+        self._unmatched = self._contradicted = 0
 
     def place(self, view: View) -> PlacedPose:
         """Where the view was taken; what it sees becomes part of the map that later ones match.
@@ -112,8 +118,12 @@ class ScanRegistration:
         fits = match is not None and match.overlap >= GOOD_OVERLAP
         if self._lost and fits and seen.by_laser:  # it sees all round: hardly by chance
             self._lost.end(view, self._record)
-        if self._lost or (not fits and _contradicts(surface, match, local_map, pivot)):
+        contradicted = not fits and _contradicts(surface, match, local_map, pivot)
+        self._contradicted = self._contradicted + 1 if contradicted else 0
+        if self._lost or self._contradicted >= (1 if seen.by_laser else IMAGES_IN_A_ROW):
             return self._look_for_place(view, seen, T_predicted, prior)
+        if contradicted:
+            raise BadFrame(CONTRADICTED)
         if match is None:
             return self._go_on_by_odometry(seen, surface, local_map, T_predicted)
         self._covariance = inverse(match.information + inverse(prior))
