@@ -10,6 +10,9 @@ from afkb.cli.app import build_cli
 from afkb.plugins.host import PluginHost
 
 
+pytestmark = pytest.mark.xdist_group("integration")
+
+
 def detect(*arguments):
     return CliRunner().invoke(build_cli(PluginHost()), ["detect", *arguments])
 
