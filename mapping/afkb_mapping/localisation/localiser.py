@@ -26,8 +26,8 @@ Array = NDArray[np.float64]
 ELSEWHERE_LASER, ELSEWHERE_DEPTH = -1.3, -0.75
 """Mean log-likelihood of a hit at the likeliest pose in a home that is not in the map, of a laser
 and of depth; measured in two homes, each asked in the other's map and, for what it costs, in its
-own and in that of a later visit. A laser's is so low that most of its beams may be blind: its readings all around fit one pose
-so much better than all others that this alone tells."""
+own and in that of a later visit. A laser's is so low that most of its beams may be blind: its
+readings all around fit one pose so much better than all others that this alone tells."""
 SURE = 0.9
 """Below this probability the robot is lost."""
 STEP_M, STEP_RAD = 0.05, math.radians(2.0)
