@@ -31,6 +31,9 @@ COMPILES_NOTHING = (
 )
 """Unit tests of files that begin so need no compiled kernel: they ask what is known, not seen."""
 
+DOCUMENTS = ("test_docs.py", "test_locate_command.py", "test_route_command.py")
+"""Tests that share the bundled home's map: one after the other, and long."""
+
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests that map come first, then tests that compile nothing: each kernel is compiled once.
@@ -42,11 +45,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def _turn(path: Path) -> int:
-    if path.parent.name == "integration":
+    if path.name in DOCUMENTS:
         return 0
     if path.name.removeprefix("test_").startswith(COMPILES_NOTHING):
         return 1
-    return 2 if path.parent.name == "e2e" else 3
+    return 2 if path.parent.name in ("e2e", "integration") else 3
 
 
 @pytest.fixture(scope="session")

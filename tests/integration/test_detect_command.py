@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from afkb.cli.app import build_cli
 from afkb.plugins.host import PluginHost
 
-pytestmark = pytest.mark.xdist_group("integration")
+pytestmark = pytest.mark.xdist_group("examples")
 
 
 def detect(*arguments):

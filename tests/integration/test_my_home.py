@@ -13,7 +13,7 @@ import pytest
 from documents import blocks
 from running import ROOT, run_afkb
 
-pytestmark = pytest.mark.xdist_group("integration")
+pytestmark = pytest.mark.xdist_group("examples")
 README = "examples/my_home/README.md"
 EXTENSION = str(ROOT / "examples" / "my_home" / "my-home.yaml")
 BENCHES_XY = [(3.9, 3.2), (3.2, 0.7)]

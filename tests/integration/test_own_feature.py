@@ -9,7 +9,7 @@ import pytest
 
 from running import ROOT, run_afkb
 
-pytestmark = pytest.mark.xdist_group("integration")
+pytestmark = pytest.mark.xdist_group("examples")
 FOLDER = ROOT / "examples" / "own_feature"
 STEPS = ("--ontology", str(FOLDER / "steps.yaml"))
 STOOL_XYZ = (2.6 - 0.6, 2.4 - 1.7, 0.24)

@@ -12,7 +12,7 @@ import pytest
 from running import ROOT, run_afkb
 
 PACKAGE = ROOT / "examples" / "third_party"
-pytestmark = pytest.mark.xdist_group("integration")
+pytestmark = pytest.mark.xdist_group("examples")
 
 CHECKS = """
 from pathlib import Path

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import Closure, LoopProposal
 from afkb.inference import Network
-from afkb_mapping.geometry import inverse
+from afkb_mapping.geometry import inverse, yaw_of
 from afkb_mapping.loops.candidates import constellations, scan_matches
 from afkb_mapping.loops.judging import contradicting, judged
 from afkb_mapping.loops.landmarks import Recogniser
@@ -71,7 +71,7 @@ def closed(stations: Sequence[Station], predicted: Sequence[Closure] = ()) -> Cl
     if any(_corrects(p, survey) for p in _verified(proposals)):
         after, proposals = _corrected(survey, proposals)
     told = [p for p in proposals if p.constraint is None or _corrects(p, survey)]
-    moved = after is not before
+    moved = any(map(_moved, before, after))
     return ClosedLoops(
         tuple(_placed(stations, after)) if moved else tuple(s.T_placed for s in stations),
         moved,
@@ -111,6 +111,12 @@ def _corrected(survey: Survey, proposals: Sequence[Proposal]) -> tuple[list[Arra
     if any(a is not b for a, b in zip(checked, proposals, strict=True)):
         poses = optimised(survey.poses, steps, [p.loop for p in _verified(checked)])
     return poses, checked
+
+
+def _moved(before: Array, after: Array) -> bool:
+    """Whether a pose moves by what matters: else what was mapped stays as it is."""
+    T = inverse(before) @ after
+    return bool(np.hypot(T[0, 3], T[1, 3]) > CORRECTION_M or abs(yaw_of(T)) > CORRECTION_RAD)
 
 
 def _verified(proposals: Sequence[Proposal]) -> list[Proposal]:
