@@ -45,7 +45,7 @@ def transform_xy(T_a_b: NDArray[np.float64], points_xy: NDArray[np.float64]) -> 
 
 
 def inverse(T_a_b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """T_b_a of a rigid transform (4, 4)."""
+    """T_b_a of a rigid transform (4, 4), or the inverse of any other square matrix."""
     T_b_a: NDArray[np.float64] = np.linalg.inv(T_a_b).astype(np.float64)
     return T_b_a
 
@@ -66,3 +66,8 @@ def T_from_xy_yaw(x: float, y: float, yaw: float) -> NDArray[np.float64]:
     T[:2, :2] = [[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]]
     T[:2, 3] = x, y
     return T
+
+
+def planar(T: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A pose's part in the floor plane: x, y and yaw of it (4, 4)."""
+    return T_from_xy_yaw(float(T[0, 3]), float(T[1, 3]), yaw_of(T))

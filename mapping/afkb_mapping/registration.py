@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from afkb.errors import BadFrame
 from afkb.flow import View
-from afkb_mapping.geometry import T_from_xy_yaw
+from afkb_mapping.geometry import T_from_xy_yaw, inverse
 from afkb_mapping.lost import Lost
 from afkb_mapping.odometry import step_covariance
 from afkb_mapping.placing_record import PlacingRecord
@@ -21,7 +21,7 @@ from afkb_mapping.scan_matching import LocalMap, Match, agreement, apply_motion,
 from afkb_mapping.scan_surface import SurfacePoints
 from afkb_mapping.seen_through import compared
 from afkb_mapping.surface_map import SurfaceMap
-from afkb_mapping.view_matching import GOOD_OVERLAP, best_match, inverse
+from afkb_mapping.view_matching import GOOD_OVERLAP, best_match
 from afkb_mapping.view_surface import ViewSurface, surface_in_map
 
 Array = NDArray[np.float64]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.coarse_search import candidates
+from afkb_mapping.geometry import inverse
 from afkb_mapping.scan_matching import LocalMap, Match, agreement, apply_motion, refine
 from afkb_mapping.scan_surface import SurfacePoints
 from afkb_mapping.seen_through import compared
@@ -71,9 +72,3 @@ def _jumps(seen: SurfacePoints, local_map: LocalMap, pivot: Array, prior: Array)
 def deviation(match: Match, prior: Array) -> float:
     """Mahalanobis distance of a match from odometry."""
     return math.sqrt(float(match.motion @ inverse(prior) @ match.motion))
-
-
-def inverse(matrix: Array) -> Array:
-    """The inverse, typed."""
-    inverted: Array = np.linalg.inv(matrix).astype(np.float64)
-    return inverted

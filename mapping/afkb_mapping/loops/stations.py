@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, View
-from afkb_mapping.geometry import T_from_xy_yaw, inverse, yaw_of
+from afkb_mapping.geometry import inverse, planar
 from afkb_mapping.loops.landmarks import Landmarks, Recogniser
 from afkb_mapping.scan_surface import SurfacePoints
 from afkb_mapping.view_surface import surface_in_map
@@ -73,11 +73,6 @@ def station_of(seen: SeenView, recogniser: Recogniser) -> Station:
         recogniser.landmarks_of(view, seen.detections),
         not view.has_base and view.scan is None,
     )
-
-
-def planar(T: Array) -> Array:
-    """The pose's part in the floor plane."""
-    return T_from_xy_yaw(float(T[0, 3]), float(T[1, 3]), yaw_of(T))
 
 
 def _eye_of(view: View, by_laser: bool) -> Array:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from afkb.errors import MapError
 from afkb.flow import View
-from afkb_mapping.geometry import T_from_xy_yaw, yaw_of
+from afkb_mapping.geometry import T_from_xy_yaw, inverse, planar, yaw_of
 from afkb_mapping.localisation.questions import asked, localiser_of
 from afkb_mapping.memory.memory import Memory
 
@@ -48,8 +48,7 @@ def T_first_second(folder: Path, other: Path, memory: Memory) -> Array:
         if found.lost:
             continue
         T = together[-1].T_odom_base
-        on_floor = T_from_xy_yaw(T[0, 3], T[1, 3], yaw_of(T))
-        answers.append(T_from_xy_yaw(found.x, found.y, found.yaw) @ np.linalg.inv(on_floor))
+        answers.append(T_from_xy_yaw(found.x, found.y, found.yaw) @ inverse(planar(T)))
         at.append(T[:2, 3])
         agreeing = _most_agreeing(answers, at)
         if len(agreeing) == ENOUGH_AGREEING:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from afkb.errors import SourceError
 from afkb.flow import View
-from afkb_mapping.geometry import T_from_xy_yaw, yaw_of
+from afkb_mapping.geometry import T_from_xy_yaw, inverse, planar, yaw_of
 from afkb_mapping.localisation.localiser import Localiser
 from afkb_mapping.localisation.questions import asked, localiser_of
 from afkb_mapping.selection import Selection
@@ -63,8 +63,7 @@ def _answer(localiser: Localiser, views: list[View], T_level_source: Array) -> A
     if found.lost:
         return None
     T_level_base = T_level_source @ views[-1].T_odom_base
-    on_floor = T_from_xy_yaw(T_level_base[0, 3], T_level_base[1, 3], yaw_of(T_level_base))
-    T: Array = T_from_xy_yaw(found.x, found.y, found.yaw) @ np.linalg.inv(on_floor)
+    T = T_from_xy_yaw(found.x, found.y, found.yaw) @ inverse(planar(T_level_base))
     return T @ T_level_source
 
 
