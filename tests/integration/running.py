@@ -18,7 +18,7 @@ def run_afkb(*arguments: str, cwd: Path, extra_path: Path | None = None) -> str:
         env=os.environ | ({"PYTHONPATH": str(extra_path)} if extra_path else {}),
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=900,  # kernels compile on first use, which a busy machine drags out
         check=False,
     )
     assert done.returncode == 0, f"afkb {' '.join(arguments)}: {done.stderr}"
