@@ -73,7 +73,7 @@ def environment(third_party: Path, recordings: Path | None) -> dict[str, str]:
 
 def _run(command: list[str], desk: Path, environment: dict[str, str], where: str) -> None:
     done = subprocess.run(
-        command, cwd=desk, env=environment, capture_output=True, text=True, timeout=300, check=False
+        command, cwd=desk, env=environment, capture_output=True, text=True, timeout=900, check=False
     )
     assert done.returncode == 0, f"{where}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
 
