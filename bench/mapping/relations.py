@@ -58,8 +58,8 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     host = PluginHost()
     options = dict(o.split("=", 1) for o in args.option or ["poses=odom"])
     source = host.open_source(str(args.log), options)
-    views = [v for v in source.views() if isinstance(v, View)]
-    registered, milliseconds = registered_poses(views, source.gravity_aligned)
+    recorded = [v for v in source.views() if isinstance(v, View)]
+    views, registered, milliseconds = registered_poses(recorded, source.gravity_aligned)
     seen = [Seen(replace(v, T_map_base=T)) for v, T in zip(views, registered, strict=True)]
     begun = time.thread_time()
     closed = close_loops(seen, network_of(host.knowledge_base))
@@ -74,6 +74,7 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     accepted = [p for p in closed.proposals if p.accepted]
     return {
         "views": len(views),
+        "lost": len(recorded) - len(views),
         "relations": len(relations),
         "errors": {name: _summary(e) for name, e in errors.items()},
         "closures": [
@@ -113,7 +114,10 @@ def _summary(errors: Array) -> dict[str, float]:
 
 def table(result: dict[str, Any]) -> Iterator[str]:
     """A line a state; then what was closed."""
-    yield f"{result['views']} scans, {result['relations']} relations"
+    yield (
+        f"{result['views']} scans, {result['lost']} skipped as lost, "
+        f"{result['relations']} relations"
+    )
     yield f"{'':14} compared  mean, m  sd, m  greatest, m  mean, °  sd, °"
     for name, e in result["errors"].items():
         yield (

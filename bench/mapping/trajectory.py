@@ -88,7 +88,9 @@ def registered_poses(
             continue
         used.append(view)
         milliseconds.append(1e3 * (time.thread_time() - begun))
-    return used, poses, milliseconds
+    registration.end()
+    kept = [k for k, view in enumerate(used) if view.index not in registration.held.withdrawn]
+    return [used[k] for k in kept], [poses[k] for k in kept], milliseconds
 
 
 def _map_of(home: Home, host: AlteringHost, stride: int) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,9 +10,11 @@ from numpy.typing import NDArray
 
 from afkb.errors import BadFrame
 from afkb.flow import View
+from afkb_mapping.doubt import contradicts
+from afkb_mapping.held_views import is_another_look
 from afkb_mapping.placing_record import PlacingRecord
 from afkb_mapping.relocation import FOUND_OVERLAP, LEAST_POINTS, relocated
-from afkb_mapping.scan_matching import LocalMap, Match
+from afkb_mapping.scan_matching import LocalMap, Match, rotation
 from afkb_mapping.scan_surface import SurfacePoints, joined
 from afkb_mapping.surface_map import SurfaceMap, thinned
 from afkb_mapping.view_matching import best_match
@@ -32,12 +35,22 @@ NEAR_M = 6.0
 WHY = "lost: it looks through what is mapped where odometry has it, and fits nowhere else for sure"
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Look:
+    """What a view showed, where odometry has it, and from where (2,)."""
+
+    by_laser: bool
+    surface: SurfacePoints
+    from_xy: Array
+
+
 @dataclass(slots=True, eq=False)
 class Lost:
     """What the views since the robot was lost show, where odometry has them; false if it isn't."""
 
-    _surfaces: list[tuple[bool, SurfacePoints]] = field(default_factory=list)
+    _looks: list[Look] = field(default_factory=list)
     _count: int = 0
+    _T_odom_base: Array | None = None
 
     def __bool__(self) -> bool:
         return self._count > 0
@@ -61,28 +74,54 @@ class Lost:
         `prior`: (3, 3), covariance of odometry since the last view that had a place. Raises
         `BadFrame` while that is unsure.
         """
-        self._count += 1
-        self._surfaces = [*self._surfaces[1 - MOST_VIEWS :], (seen.by_laser, seen.surest)]
-        alike = [surface for by_laser, surface in self._surfaces if by_laser == seen.by_laser]
         match = None
-        if len(alike) >= LEAST_VIEWS:
-            together, pivot_xy = thinned(joined(alike)), T_predicted[:2, 3]
-            match = _near_odometry(together, pivot_xy, prior, surface_map)
-            if match is None and (self._count <= PATIENCE or self._count % MOST_VIEWS == 0):
-                match = relocated(together, pivot_xy, surface_map)
+        if self._is_news(view, seen):
+            self._count += 1
+            self._T_odom_base = view.T_odom_base
+            look = Look(seen.by_laser, seen.surest, T_predicted[:2, 3].copy())
+            self._looks = [*self._looks[1 - MOST_VIEWS :], look]
+            match = self._found(seen.by_laser, T_predicted[:2, 3], prior, surface_map)
         if match is None:
             record.lose(view.index)
             raise BadFrame(WHY)
-        shift, turn = np.hypot(*match.motion[:2]), np.degrees(match.motion[2])
-        self.end(view, record, float(shift), float(turn))
         return match
 
-    def end(
-        self, view: View, record: PlacingRecord, metres: float = 0.0, degrees: float = 0.0
-    ) -> None:
-        """The robot is known to be so far from where odometry has it."""
-        record.find(view.index, metres, degrees)
-        self._surfaces, self._count = [], 0
+    def _is_news(self, view: View, seen: ViewSurface) -> bool:
+        """Whether it shows more than the look before; a scan may, as a laser sweeps."""
+        T = self._T_odom_base
+        return T is None or seen.by_laser or is_another_look(T, view.T_odom_base)
+
+    def _found(
+        self, by_laser: bool, pivot_xy: Array, prior: Array, surface_map: SurfaceMap
+    ) -> Match | None:
+        alike = [look for look in self._looks if look.by_laser == by_laser]
+        if len(alike) < LEAST_VIEWS:
+            return None
+        together = thinned(joined([look.surface for look in alike]))
+        match = _near_odometry(together, pivot_xy, prior, surface_map)
+        if match is None and (self._count <= PATIENCE or self._count % MOST_VIEWS == 0):
+            match = relocated(together, pivot_xy, surface_map)
+        if match is None or _is_refuted(match, alike, pivot_xy, surface_map):
+            return None
+        return match
+
+    def end(self) -> None:
+        """The robot is found."""
+        self._looks, self._count, self._T_odom_base = [], 0, None
+
+
+def _is_refuted(
+    match: Match, looks: Sequence[Look], pivot_xy: Array, surface_map: SurfaceMap
+) -> bool:
+    """Whether any of the looks contradicts the map, were the robot found there."""
+    R = rotation(float(match.motion[2]))
+    for look in looks:
+        from_xy = pivot_xy + match.motion[:2] + R @ (look.from_xy - pivot_xy)
+        placed = look.surface.moved(R, pivot_xy + match.motion[:2] - R @ pivot_xy)
+        local_map = LocalMap(surface_map.near(from_xy, NEAR_M))
+        if contradicts(None, placed, local_map, from_xy):
+            return True
+    return False
 
 
 def _near_odometry(

@@ -1,9 +1,11 @@
-"""What is to be told of how views were placed: where the robot was lost, blind, found again."""
+"""What is to be told of how views were placed: where the robot was lost, blind, found; gaps."""
 
 from __future__ import annotations
 
 import logging
 from dataclasses import dataclass, field
+
+from afkb_mapping.frame_gaps import FrameGaps
 
 LOG = logging.getLogger("afkb_mapping")
 
@@ -17,6 +19,7 @@ class PlacingRecord:
     first_lost: int | None = None
     is_lost: bool = False
     found_again: list[str] = field(default_factory=list)
+    gaps: FrameGaps = field(default_factory=FrameGaps)
 
     def lose(self, index: int) -> None:
         """A view that was not taken where odometry says, and fits nowhere for sure."""
@@ -26,6 +29,10 @@ class PlacingRecord:
         self.is_lost = True
         self.lost += 1
 
+    def withdraw(self, views: int) -> None:
+        """So many views before were not taken where they were placed, as it turns out."""
+        self.lost += views
+
     def find(self, index: int, metres: float, degrees: float) -> None:
         """The robot is known to be somewhere again, so far from where odometry had it."""
         self.is_lost = False
@@ -33,16 +40,21 @@ class PlacingRecord:
         LOG.warning("%s", line)
         self.found_again.append(line)
 
+    def end(self) -> None:
+        """The recording is over: frames that never came are told of."""
+        if self.gaps.note:
+            LOG.warning("%s", self.gaps.note)
+
     @property
     def counts(self) -> dict[str, int]:
         """What run.json counts."""
         found = {"lost_views": self.lost, "found_again": len(self.found_again)}
-        return found | {"blind_views": self.blind}
+        return found | {"blind_views": self.blind, "lost_frames": self.gaps.lost}
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Lines for run.json and the user; none where nothing went wrong."""
-        notes = []
+        notes = [self.gaps.note] if self.gaps.note else []
         if self.lost:
             notes.append(
                 f"lost from frame {self.first_lost} on: {self.lost} views look through what is "

@@ -13,15 +13,18 @@ from numpy.typing import NDArray
 
 from afkb.errors import BadFrame
 from afkb.flow import View
+from afkb_mapping.doubt import contradicts, is_confirmed, is_doubtful
 from afkb_mapping.geometry import T_from_xy_yaw, inverse
-from afkb_mapping.lost import Lost
+from afkb_mapping.held_views import HELD_LOOKS, HeldViews
+from afkb_mapping.lost import WHY, Lost
 from afkb_mapping.odometry import step_covariance
 from afkb_mapping.placing_record import PlacingRecord
-from afkb_mapping.scan_matching import LocalMap, Match, agreement, apply_motion, rotation
-from afkb_mapping.scan_surface import SurfacePoints
+from afkb_mapping.probation import Probation
+from afkb_mapping.scan_matching import LocalMap, Match, agreement, rotation
+from afkb_mapping.scan_surface import SurfacePoints, no_surface
 from afkb_mapping.seen_through import compared
 from afkb_mapping.surface_map import SurfaceMap
-from afkb_mapping.view_matching import GOOD_OVERLAP, best_match
+from afkb_mapping.view_matching import GOOD_OVERLAP, MAX_DEVIATION, best_match, deviation
 from afkb_mapping.view_surface import ViewSurface, surface_in_map
 
 Array = NDArray[np.float64]
@@ -38,6 +41,8 @@ IMAGES_IN_A_ROW = 2
 few views, one by itself often does after some drift. A scan, which sees all round, needs no second.
 """
 CONTRADICTED = "it looks through what is mapped where odometry has it"
+NOTHING = ViewSurface(no_surface(), no_surface())
+"""What is held of a view that was placed but doesn't change the map."""
 RADIUS_M = 15.0
 """Map within this distance of the robot takes part in a match, whatever the sensor's range."""
 
@@ -61,7 +66,8 @@ class ScanRegistration:
     """Places views one after another; the first one defines the map frame.
 
     `T_map_odom` takes the source's pose frame to the map frame at the first view (levelling).
-    `record` is told where the robot was lost and found again.
+    `record` is told where the robot was lost and found again; `held`: views that were placed by
+    their image and may yet turn out to have been taken elsewhere.
     """
 
     def __init__(self, T_map_odom: Array, record: PlacingRecord | None = None) -> None:
@@ -73,6 +79,8 @@ class ScanRegistration:
         self._drift = np.zeros((3, 3))
         self._scans, self._images = SurfaceMap(), SurfaceMap()
         self._unmatched = self._contradicted = 0
+        self._probation: Probation | None = None
+        self.held = HeldViews()
 
     def place(self, view: View) -> PlacedPose:
         """Where the view was taken; what it sees becomes part of the map that later ones match.
@@ -90,15 +98,18 @@ class ScanRegistration:
         if seen.is_blind:
             self._lost.check(view)
             self._record.blind += 1
+            self.held.hold(view, NOTHING)
             return PlacedPose(T_predicted, self._covariance + self._drift, False, 0.0)
         if not len(self._map_of(seen)):
             self._take_in(seen)
+            self.held.settled += 1
             return PlacedPose(T_predicted, self._covariance + self._drift, True, 1.0)
         return self._match(view, seen, T_predicted)
 
     def recall(self, view: View) -> None:
         """Make what a placed view of an earlier visit shows part of the map, as it is placed."""
         assert view.T_map_base is not None
+        self.held.settled += 1
         self._take_in(surface_in_map(view, view.T_map_base))
 
     def _take_in(self, seen: ViewSurface) -> None:
@@ -116,38 +127,144 @@ class ScanRegistration:
         local_map = LocalMap(self._map_of(seen).near(pivot, reach))
         match = best_match(surface, local_map, pivot, prior)
         fits = match is not None and match.overlap >= GOOD_OVERLAP
-        if self._lost and fits and seen.by_laser:  # it sees all round: hardly by chance
-            self._lost.end(view, self._record)
-        contradicted = not fits and _contradicts(surface, match, local_map, pivot)
+        if (self._lost or self._probation) and fits and seen.by_laser:
+            self._be_found(view, 0.0, 0.0)  # it sees all round: hardly by chance
+        contradicted = not fits and contradicts(match, surface, local_map, pivot)
         self._contradicted = self._contradicted + 1 if contradicted else 0
+        if (
+            self._probation
+            and match is not None
+            and fits
+            and deviation(match, prior) < MAX_DEVIATION
+        ):
+            confirmed = is_confirmed(match, surface, local_map, pivot)
+            return self._go_on_probation(view, seen, match, T_predicted, confirmed)
+        if self._probation:
+            self._doubt(view, contradicted)
         if self._lost or self._contradicted >= (1 if seen.by_laser else IMAGES_IN_A_ROW):
             return self._look_for_place(view, seen, T_predicted, prior)
         if contradicted:
             raise BadFrame(CONTRADICTED)
         if match is None:
-            return self._go_on_by_odometry(seen, surface, local_map, T_predicted)
+            return self._go_on_by_odometry(view, seen, surface, local_map, T_predicted)
         self._covariance = inverse(match.information + inverse(prior))
-        return self._settle(seen, match, T_predicted)
+        doubtful = seen.by_laser and not fits and is_doubtful(match, surface, local_map, pivot)
+        return self._settle(view, seen, match, T_predicted, doubtful)
 
-    def _settle(self, seen: ViewSurface, match: Match, T_predicted: Array) -> PlacedPose:
-        """Believe a match: the view becomes part of the map, and odometry is corrected."""
-        self._unmatched, self._drift = 0, np.zeros((3, 3))
+    def _settle(
+        self, view: View, seen: ViewSurface, match: Match, T_predicted: Array, doubtful: bool
+    ) -> PlacedPose:
+        """Believe a match: odometry is corrected, and the view becomes part of the map.
+
+        A `doubtful` one doesn't, unless so are the next: it would double walls.
+        """
+        self._unmatched = self._unmatched + 1 if doubtful else 0
+        corrected, placed = self._corrected(seen, match, T_predicted)
+        if not doubtful or self._unmatched > UNMATCHED_VIEWS:
+            self._take_in(corrected)
+            self._hold(view, corrected, seen.by_laser)
+        else:
+            self._hold(view, NOTHING, seen.by_laser)
+        return placed
+
+    def _corrected(
+        self, seen: ViewSurface, match: Match, T_predicted: Array
+    ) -> tuple[ViewSurface, PlacedPose]:
+        """What is seen, and from where, where it matches; so is odometry from now on."""
+        self._drift = np.zeros((3, 3))
         T_correction = _about(T_predicted[:2, 3], match.motion)
         self._T_map_odom = T_correction @ self._T_map_odom
-        self._take_in(seen.moved(T_correction[:2, :2], T_correction[:2, 3]))
-        return PlacedPose(T_correction @ T_predicted, self._covariance, True, match.overlap)
+        moved = seen.moved(T_correction[:2, :2], T_correction[:2, 3])
+        T_map_base = T_correction @ T_predicted
+        return moved, PlacedPose(T_map_base, self._covariance, True, match.overlap)
 
     def _look_for_place(
         self, view: View, seen: ViewSurface, T_predicted: Array, prior: Array
     ) -> PlacedPose:
         """A lost robot looks for where its last views fit the map, near odometry or anywhere."""
+        if not self._lost:
+            self._take_back()
         surface_map = self._map_of(seen)
         match = self._lost.look(view, seen, T_predicted, prior, surface_map, self._record)
+        self._lost.end()
         self._covariance = inverse(match.information)
-        return self._settle(seen, match, T_predicted)
+        shift, turn = float(np.hypot(*match.motion[:2])), float(np.degrees(match.motion[2]))
+        if seen.by_laser:
+            self._be_found(view, shift, turn)
+            return self._settle(view, seen, match, T_predicted, doubtful=False)
+        self._probation = Probation(view.T_odom_base, shift, turn)
+        corrected, placed = self._corrected(seen, match, T_predicted)
+        self.held.hold(view, corrected)
+        return placed
+
+    def _go_on_probation(
+        self, view: View, seen: ViewSurface, match: Match, T_predicted: Array, confirmed: bool
+    ) -> PlacedPose:
+        """One more view is as the map has it; what is seen doesn't change the map yet."""
+        assert self._probation is not None
+        if not self._probation.is_news(view.T_odom_base):
+            self._record.lose(view.index)
+            raise BadFrame(WHY)
+        self._covariance = inverse(match.information)
+        corrected, placed = self._corrected(seen, match, T_predicted)
+        self.held.hold(view, corrected)
+        self._probation.count(view.T_odom_base, confirmed)
+        if self._probation.is_passed:
+            self._be_found(view, self._probation.metres, self._probation.degrees)
+        return placed
+
+    def _doubt(self, view: View, contradicted: bool) -> None:
+        """A view on probation that doesn't fit: the place is given up, or at least not sure yet."""
+        assert self._probation is not None
+        self._probation.count(view.T_odom_base, confirmed=False)
+        if not contradicted and not self._probation.is_failed:
+            self._record.lose(view.index)
+            raise BadFrame(WHY)
+        self._record.withdraw(len(self.held.withdraw()))
+        self._probation, self._contradicted = None, IMAGES_IN_A_ROW
+
+    def _be_found(self, view: View, metres: float, degrees: float) -> None:
+        """The robot is surely so far from where odometry had it; what it saw becomes map."""
+        if self._probation:
+            for held in self.held.release():
+                self._take_in(held.seen)
+        self._lost.end()
+        self._probation = None
+        self._record.find(view.index, metres, degrees)
+
+    def _hold(self, view: View, taken_in: ViewSurface, by_laser: bool) -> None:
+        """Remember what a view made part of the map: what an image placed may be taken back."""
+        if by_laser:
+            self.held.release()
+        else:
+            self.held.hold(view, taken_in)
+
+    def end(self) -> None:
+        """No more views come: those whose place has not become sure by now are taken back."""
+        if self._probation:
+            self._record.withdraw(len(self.held.withdraw()))
+        self.held.release()
+
+    def _take_back(self) -> None:
+        """What was placed just before one got lost was, most likely, placed wrongly already.
+
+        A map that hardly holds more than that is kept: in the rest nothing could be found.
+        """
+        if self.held.settled < HELD_LOOKS:
+            self.held.release()
+        taken_back = self.held.withdraw()
+        for held in taken_back:
+            self._scans.remove(held.seen.scan)
+            self._images.remove(held.seen.image)
+        self._record.withdraw(len(taken_back))
 
     def _go_on_by_odometry(
-        self, seen: ViewSurface, surface: SurfacePoints, local_map: LocalMap, T_predicted: Array
+        self,
+        view: View,
+        seen: ViewSurface,
+        surface: SurfacePoints,
+        local_map: LocalMap,
+        T_predicted: Array,
     ) -> PlacedPose:
         """Keep odometry's pose; take the view in only where it can't double a wall."""
         self._unmatched += 1
@@ -156,17 +273,10 @@ class ScanRegistration:
         is_new = found.mean() < 1 - NEW_GROUND or self._unmatched > UNMATCHED_VIEWS
         if is_new and not compared(surface, local_map.surface, T_predicted[:2, 3]).disagrees:
             self._take_in(seen)
+            self._hold(view, seen, seen.by_laser)
+        else:
+            self._hold(view, NOTHING, seen.by_laser)
         return PlacedPose(T_predicted, self._covariance + self._drift, False, overlap)
-
-
-def _contradicts(
-    seen: SurfacePoints, match: Match | None, local_map: LocalMap, pivot_xy: Array
-) -> bool:
-    """Whether what is seen contradicts the map, even where it matches best."""
-    placed = seen if match is None else apply_motion(match.motion, pivot_xy, seen)
-    center = pivot_xy if match is None else pivot_xy + match.motion[:2]
-    comparison = compared(placed, local_map.surface, center)
-    return comparison.disagrees if match is None else comparison.contradicts
 
 
 def _about(pivot: Array, motion: Array) -> Array:

@@ -15,6 +15,8 @@ CELL_M = 0.05
 """Cell within which the map averages points: about the beam spacing at 5 m, below a wall's depth"""
 TILE_M = 1.0
 """Rows are found by tiles of this width, so that what is far away costs nothing."""
+LEAST_WEIGHT = 1e-6
+"""Below any point's: what is left of a cell, by rounding, when all of its points were taken out."""
 
 
 class SurfaceMap:
@@ -34,8 +36,15 @@ class SurfaceMap:
 
     def add(self, surface: SurfacePoints) -> None:
         """Average in a view's points, given in the map frame; surer points count for more."""
+        self._count(surface, 1.0)
+
+    def remove(self, surface: SurfacePoints) -> None:
+        """Take out what was added before, point for point."""
+        self._count(surface, -1.0)
+
+    def _count(self, surface: SurfacePoints, times: float) -> None:
         rows = self._rows_of(surface)
-        weights = (RANGE_SIGMA_M / surface.sigma_m)[:, None] ** 2
+        weights = times * (RANGE_SIGMA_M / surface.sigma_m)[:, None] ** 2
         values = np.column_stack([surface.points_xy, surface.normals_xy, surface.sigma_m])
         np.add.at(self._sums, rows, np.column_stack([values * weights, weights]))
         self._level[rows] = surface.level
@@ -68,6 +77,7 @@ class SurfaceMap:
         return self._at(np.arange(len(self._index)))
 
     def _at(self, rows: NDArray[np.intp]) -> SurfacePoints:
+        rows = rows[self._sums[rows, 5] > LEAST_WEIGHT]
         mean = self._sums[rows, :5] / self._sums[rows, 5:]
         length = np.linalg.norm(mean[:, 2:4], axis=1, keepdims=True)
         normals = mean[:, 2:4] / np.maximum(length, 1e-9)
