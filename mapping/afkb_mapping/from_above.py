@@ -71,18 +71,18 @@ def hull_candidates(xy: NDArray[np.floating | np.integer]) -> NDArray[np.float32
     Whatever lies within the octagon of the points that reach farthest in eight directions can't
     be one (Akl and Toussaint, 1978); that leaves few to sort.
     """
-    return _outside_octagon(xy)
+    return _outside_octagon(np.ascontiguousarray(xy, np.float32))
 
 
 @kernel
-def _outside_octagon(xy: NDArray[np.floating | np.integer]) -> NDArray[np.float32]:
+def _outside_octagon(xy: NDArray[np.float32]) -> NDArray[np.float32]:
     """Points (N, 2+) that don't lie within the octagon of the farthest."""
     n = len(xy)
     corner = np.zeros(8, np.int64)
     x0 = s0 = y0 = d0 = math.inf
     x1 = s1 = y1 = d1 = -math.inf
     for i in range(n):
-        x, y = float(np.float32(xy[i, 0])), float(np.float32(xy[i, 1]))
+        x, y = float(xy[i, 0]), float(xy[i, 1])
         s, d = x + y, y - x
         if x > x1:
             x1, corner[0] = x, i
@@ -103,13 +103,13 @@ def _outside_octagon(xy: NDArray[np.floating | np.integer]) -> NDArray[np.float3
     edges = np.zeros((8, 3))
     for k in range(8):
         a, b = corner[k], corner[(k + 1) % 8]
-        ax, ay = float(np.float32(xy[a, 0])), float(np.float32(xy[a, 1]))
-        edges[k, 0] = ay - float(np.float32(xy[b, 1]))
-        edges[k, 1] = float(np.float32(xy[b, 0])) - ax
+        ax, ay = float(xy[a, 0]), float(xy[a, 1])
+        edges[k, 0] = ay - float(xy[b, 1])
+        edges[k, 1] = float(xy[b, 0]) - ax
         edges[k, 2] = edges[k, 0] * ax + edges[k, 1] * ay
     out, kept = np.empty((n, 2), np.float32), 0
     for i in range(n):
-        x, y = float(np.float32(xy[i, 0])), float(np.float32(xy[i, 1]))
+        x, y = float(xy[i, 0]), float(xy[i, 1])
         within = True
         for k in range(8):
             if edges[k, 0] == 0 and edges[k, 1] == 0:

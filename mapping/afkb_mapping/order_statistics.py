@@ -14,8 +14,8 @@ FEW = 8
 
 
 @kernel
-def _select(scratch: NDArray[np.float64], k: int) -> float:
-    """The k-th smallest value; whatever stands behind it then is no smaller (Hoare's select)."""
+def kth_smallest(scratch: NDArray[np.float64], k: int) -> float:
+    """The k-th smallest value, from 0; whatever stands behind it then is no smaller (Hoare)."""
     left, right = 0, len(scratch) - 1
     while left < right:
         pivot = scratch[(left + right) // 2]
@@ -67,7 +67,7 @@ def _percentile_within(scratch: NDArray[np.float64], percent: float) -> float:
         high, low = _smallest(scratch, -1.0, last - k - 1)
         low, high = -low, -high
     else:
-        low = _select(scratch, k)
+        low = kth_smallest(scratch, k)
         high = float(scratch[k + 1])
         for n in range(k + 2, len(scratch)):
             high = min(high, float(scratch[n]))

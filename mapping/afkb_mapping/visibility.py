@@ -59,27 +59,23 @@ class Sight:
         """
         if self._depth_m is None or not len(points_xy):
             return NOT_LOOKED_AT
-        step = max(1, len(points_xy) // most)
-        return Look(
-            *_look(points_xy, height_m, step, self._depth_m, self._intrinsics, self._T_camera_map)
-        )
+        some_xy = np.ascontiguousarray(points_xy[:: max(1, len(points_xy) // most)])
+        return Look(*_look(some_xy, height_m, self._depth_m, self._intrinsics, self._T_camera_map))
 
 
 @kernel
 def _look(
     points_xy: NDArray[np.float64],
     height_m: float,
-    step: int,
     depth_m: NDArray[np.float32],
     intrinsics: NDArray[np.float64],
     T: NDArray[np.float64],
 ) -> tuple[float, float, float]:
-    """Shares of every step-th point: in view; of those, seen through, and hit."""
+    """Shares of points (N, 2), N > 0: in view; of those, seen through, and hit."""
     fx, fy, cx, cy = intrinsics
-    looked, inside, empty, hit = 0, 0, 0, 0
-    for n in range(0, len(points_xy), step):
+    inside, empty, hit = 0, 0, 0
+    for n in range(len(points_xy)):
         px, py = points_xy[n, 0], points_xy[n, 1]
-        looked += 1
         z = T[2, 0] * px + T[2, 1] * py + T[2, 2] * height_m + T[2, 3]
         if not NEAREST_M < z < USABLE_RANGE_M:
             continue
@@ -97,4 +93,4 @@ def _look(
         hit += abs(behind) <= margin
     if inside == 0:
         return 0.0, 0.0, 0.0
-    return inside / looked, empty / inside, hit / inside
+    return inside / len(points_xy), empty / inside, hit / inside

@@ -30,7 +30,8 @@ def noise_of(body: Body, depth_m: NDArray[np.float32], scale: float) -> Noise:
     Racks, leaves and heaps of small things are rougher than their view; cartons and cups are not.
     """
     thin = max(1, len(body.u) // MOST_SAMPLES)
-    ratios = _noise_over_model(body.u[::thin], body.v[::thin], depth_m)
+    u, v = np.ascontiguousarray(body.u[::thin]), np.ascontiguousarray(body.v[::thin])
+    ratios = _noise_over_model(u, v, depth_m)
     own = percentile(ratios, 50.0) if len(ratios) >= LEAST_SAMPLES else scale
     return Noise(body.sigma_m * max(scale, own), own / scale)
 

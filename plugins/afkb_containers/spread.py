@@ -72,11 +72,11 @@ def spread_of(
     """
     if len(inner) < LEAST_SAMPLES:
         return UNKNOWN
-    inner = inner[:: max(1, len(inner) // MOST_SAMPLES)]
+    inner = np.ascontiguousarray(inner[:: max(1, len(inner) // MOST_SAMPLES)])
     scatter, along = _scatter(body.points, body.depth_m, inner, camera_xyz)
     _, axes = np.linalg.eigh(scatter - sigma_m**2 * along)
     normal, across = axes[:, 0].copy(), axes[:, 1].copy()
-    points = body.points[:: max(1, len(body.u) // MOST_SAMPLES)]
+    points = np.ascontiguousarray(body.points[:: max(1, len(body.u) // MOST_SAMPLES)])
     noise = sigma_m * math.sqrt(float(normal @ along @ normal))
     span = _extent_along(points, normal)
     least, mean, most = (

@@ -28,6 +28,8 @@ SHORTEST_M, LONGEST_M = 0.12, 1.0
 SQUARE_RAD = (math.radians(15.0), math.radians(30.0))
 """A jamb runs along the gap or straight across it, but for the first; beyond the second it is none.
 """
+FORTH, BACK = np.int64(1), np.int64(-1)
+"""Steps along the edges; of a type, as literals are not, so that kernels are compiled once."""
 WIDEST_ANGLE = math.radians(160.0)
 """Wider than this the sensor stands between the jambs, and knows nothing of what is beyond."""
 
@@ -99,7 +101,7 @@ def _gap(row: list[float], points: Array) -> Gap:
         int(n_beams),
         square,
         (lengths[0], lengths[1]),
-        (points[i_last : i + 1][::-1], points[j : j_last + 1]),
+        (points[i_last : i + 1][::-1].copy(), points[j : j_last + 1]),
     )
 
 
@@ -136,8 +138,8 @@ def _gaps(
             width = _apart(points[i], points[j])
             if width < narrowest or width > widest or count == len(rows):
                 continue
-            length_a, i_last, square_a = _side(points, i, starts[a] - 1, -1, points[j])
-            length_b, j_last, square_b = _side(points, j, ends[b], 1, points[i])
+            length_a, i_last, square_a = _side(points, i, starts[a] - 1, BACK, points[j])
+            length_b, j_last, square_b = _side(points, j, ends[b], FORTH, points[i])
             if min(square_a, square_b) <= 0 or min(length_a, length_b) < SHORTEST_M:
                 continue
             deep, blocked, beams = _through(points[i], points[j], first, last, bearings, reach)

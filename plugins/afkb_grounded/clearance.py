@@ -12,6 +12,7 @@ from afkb.flow import View
 from afkb_grounded.seen import BODY, SURFACE, UPRIGHT, Seen
 from afkb_mapping.depth_points import intrinsics_of
 from afkb_mapping.kernels import kernel
+from afkb_mapping.order_statistics import kth_smallest
 
 FARTHEST_M = 3.0
 """No clearance is told beyond this: a view shows too little of a room."""
@@ -119,7 +120,7 @@ def _free_above(
         n += 1
     if n == 0:
         return FARTHEST_M
-    return float(np.sort(free[:n])[min(int(BLOCKED_SHARE * n), n - 1)])
+    return kth_smallest(free[:n], min(int(BLOCKED_SHARE * n), n - 1))
 
 
 def _few(points_xy: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -89,8 +89,8 @@ def cell_planes(
     pixels, moments, down, window = room_for(cols)
     fit, own = np.empty((N_FIT, cols), np.float32), np.empty((N_FIT, cols + 2), np.float32)
     camera, T = intrinsics.astype(np.float32), T_map_camera.astype(np.float32)
-    if rows > 0:
-        moments_of_row(depth_m, 0, pixels, moments[1])
+    for r in range(min(rows, 1)):
+        moments_of_row(depth_m, r, pixels, moments[1])
     for r in range(rows):
         above, here, below = moments[r % 3], moments[(r + 1) % 3], moments[(r + 2) % 3]
         if r + 1 < rows:

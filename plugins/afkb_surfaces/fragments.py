@@ -74,8 +74,12 @@ def join_fragments(
 
     `parts`: flat indexes of the cells that may join, label by label, and where each label begins.
     """
+    order, starts = parts
+    sizes = np.diff(starts)
     return _joined(
-        *parts,
+        order,
+        starts,
+        np.argsort(-sizes, kind="stable")[: np.count_nonzero(sizes >= MIN_CELLS)],
         depth_m,
         cells.planes,
         cells.size_px,
@@ -91,6 +95,7 @@ def join_fragments(
 def _joined(
     order: NDArray[np.int64],
     starts: NDArray[np.int64],
+    parts: NDArray[np.int64],
     depth_m: NDArray[np.float32],
     planes: NDArray[np.float32],
     size_px: int,
@@ -100,13 +105,11 @@ def _joined(
     gap_m: float,
     noise: float,
 ) -> NDArray[np.int32]:
-    """Each part, largest first, takes in those smaller ones that go with it.
+    """Each of the parts, largest first, takes in those smaller ones that go with it.
 
     Flat indexes of the cells of label k begin at `order[starts[k]]`.
     """
-    sizes = starts[1:] - starts[:-1]
-    target = np.arange(len(sizes)).astype(np.int32)
-    parts = np.argsort(-sizes, kind="mergesort")[: (sizes >= MIN_CELLS).sum()]
+    target = np.arange(len(starts) - 1).astype(np.int32)
     heights, depths = np.zeros(len(parts)), np.zeros(len(parts))
     places = np.empty((len(parts), PART_SAMPLES, 4), np.float32)
     counts, boxes = np.zeros(len(parts), np.int64), np.empty((len(parts), 4), np.float32)

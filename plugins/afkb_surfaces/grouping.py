@@ -15,8 +15,10 @@ SAME_WALL_COS = np.float32(0.92)
 """A wall's normal stays this close to where it was first seen, so that corners part walls."""
 NONE, FLOOR, SUPPORT, UPRIGHT = 0, 1, 2, 3
 FLOOR_LABEL = 1
-RIGHT, DOWN = 1, 2
+RIGHT, DOWN = np.int64(1), np.int64(2)
 """Bits of a link: the neighbour that lies on one surface with a cell."""
+SAME, NEXT = np.int64(0), np.int64(1)
+"""Cells ahead. Of a type, as literals are not, so that `_link` is compiled once."""
 MOST_SLACK_RAD, MOST_UPRIGHT_SLACK_RAD = 0.35, 0.17
 """However unsure a normal is, it is never taken to be this much off."""
 ZERO, ONE = np.float32(0), np.float32(1)
@@ -67,9 +69,11 @@ def links_of(
     links = np.zeros((rows, cols), np.uint8)
     step, times = np.float32(step_m), np.float32(noise)
     for r in range(rows):
-        _link(planes[r], planes[r], kinds[r], kinds[r], 1, step, times, RIGHT, links[r])
+        _link(planes[r], planes[r], kinds[r], kinds[r], NEXT, step, times, RIGHT, links[r])
         if r + 1 < rows:
-            _link(planes[r], planes[r + 1], kinds[r], kinds[r + 1], 0, step, times, DOWN, links[r])
+            _link(
+                planes[r], planes[r + 1], kinds[r], kinds[r + 1], SAME, step, times, DOWN, links[r]
+            )
     return links
 
 

@@ -16,6 +16,8 @@ FLOOR_M = 0.03
 MAX_SLOPE = 0.05
 MIN_SAMPLES = 30
 LEVEL_M2 = 0.002
+FIRST = np.int64(0)
+"""Column; of a type, as a literal is not, so that `points_of_row` is compiled once."""
 SUPPORT_BITS = ~(np.uint64(1) << WALL_BIT)
 
 
@@ -80,7 +82,7 @@ def _over_raster(
         np.float32(origin_xy[1]),
     )
     for v in range(rows):
-        points_of_row(depth_m, v, intrinsics, T_map_camera, row, 0, cols)
+        points_of_row(depth_m, v, intrinsics, T_map_camera, row, FIRST, cols)
         for u in range(cols):
             if depth_m[v, u] <= 0:
                 continue
@@ -148,7 +150,7 @@ def label_things(
     us, vs, ks = np.empty((3, rows * cols), np.int32)
     over_squares, n = raster.ravel(), 0
     for v in range(rows):
-        points_of_row(depth_m, v, intrinsics, T_map_camera, row, 0, cols)
+        points_of_row(depth_m, v, intrinsics, T_map_camera, row, FIRST, cols)
         _squares_of_row(depth_m[v], row, ox, oy, raster.shape, labels[v], squares)
         for u in range(cols):
             bits = over_squares[squares[u]]

@@ -20,6 +20,8 @@ FARTHEST_M = 3.5
 """Beyond this, noise hides an opening and makes one of what it isn't."""
 CELL_M = 0.015
 WIDEST_M = 0.75
+EACH = np.int64(1)
+"""Every pixel is taken; of a type, as a literal is not, so that `_loose` is compiled once."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -186,7 +188,7 @@ def _of_part(
     """
     rows, cols = depth_m.shape
     within = (max(box[0], 0), max(box[1], 0), min(box[2], cols), min(box[3], rows))
-    u, v, _, ij = _loose(depth_m, labels, intrinsics, T_map_camera, within, 1, low_m, high_m)
+    u, v, _, ij = _loose(depth_m, labels, intrinsics, T_map_camera, within, EACH, low_m, high_m)
     n = 0
     for k in range(len(u)):
         i, j = ij[k, 0] - i0, ij[k, 1] - j0

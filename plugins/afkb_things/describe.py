@@ -21,7 +21,7 @@ LEAST_WHOLE = 0.2
 
 def body_detection(body: Body, attached: float, detector: str) -> Detection:
     """A body from its base up to its top; `attached` is the share of its outline that goes on."""
-    points = body.points[:: max(1, len(body.points) // SAMPLES)]
+    points = np.ascontiguousarray(body.points[:: max(1, len(body.points) // SAMPLES)])
     sides = sides_from_above(points)
     base, top = body.base_m, percentile(points[:, 2], 98.0)
     box = box_around(on_grid(points, 0.005), top, 0.0, max(top - base, 0.0))

@@ -76,7 +76,7 @@ class Parts:
     ) -> None:
         self.measures, self.meet = measures, meet
         self.base_m, self.min_pixels, self.cell_px = base_m, min_pixels, cell_px
-        self.became = np.arange(len(meet))
+        self.became = np.arange(len(meet), dtype=np.int32)
         self.kept = [k for k in range(1, len(meet)) if measures[k, COUNT] > 0]
 
     def join(self, a: int, b: int) -> None:

@@ -13,6 +13,8 @@ LEAST_PIXELS = 12
 EDGE = 1.0
 """Depth of a valley from which it parts two patches."""
 NEIGHBOURS = ((0, 1), (1, 0), (0, -1), (-1, 0))
+NONE = np.int64(0)
+"""Of a type, as a literal is not: `_flood` is compiled once."""
 
 
 @kernel
@@ -30,7 +32,7 @@ def patches_of(
     rows, cols = depth_m.shape
     out = np.zeros((rows, cols), np.int32)
     queue = np.empty((rows * cols, 2), np.int32)
-    count = filled = 0
+    count, filled = 0, NONE
     for smooth in (True, False):
         for v in range(rows):
             for u in range(cols):
@@ -50,7 +52,7 @@ def patches_of(
             for v in range(rows):
                 for u in range(cols):
                     out[v, u] = max(out[v, u], 0)
-            filled = _flood(depth_m, kinds, valley, noise, out, queue, 0, filled, False)
+            filled = _flood(depth_m, kinds, valley, noise, out, queue, NONE, filled, not smooth)
     return out, count
 
 

@@ -44,7 +44,7 @@ def primitive_of(body: Body, box: OrientedBox) -> Primitive | None:
 
     `box` is the upright one around what is seen of it, which the shapes start from.
     """
-    points = body.points[:: max(1, len(body.points) // SAMPLES)]
+    points = np.ascontiguousarray(body.points[:: max(1, len(body.points) // SAMPLES)])
     kind, p, residual = _best_shape(points, (*box.center_xyz, *box.size_xyz, box.yaw), body.sigma_m)
     return None if kind < 0 else _primitive(kind, p, box.bottom, residual)
 

@@ -85,7 +85,7 @@ def through(
         for u in range(u0, u1):
             if taken[v, u] or depth_m[v, u] <= 0:
                 continue
-            x, y, h = row[0, u], row[1, u], row[2, u]
+            x, y, h = float(row[0, u]), float(row[1, u]), row[2, u]
             if h >= top_m or inwards(x, y, normals, offsets) <= margin:
                 continue
             t = drop / (ch - h)
