@@ -31,7 +31,10 @@ BESIDE_M = 0.08
 LEVEL_M = 0.03
 """and as high or this near: a lamp's foot is no further above the top that it stands on."""
 FLAT_M = 0.03
-"""Nodes no higher than this are tops of furniture, whatever small thing stands at their middle."""
+"""Nodes no higher than this are tops of furniture, whatever small thing stands at their middle; and
+a top at the foot of a thing is what that stands on."""
+LARGER = 2.5
+"""A node longer than so many times a thing is of what holds it: a sink and not the bowl in it."""
 MOVED_M = 0.10
 """Truth has things fall and settle by less."""
 SAYINGS = ("moved", "vanished", "unchanged", "unknown")
@@ -164,10 +167,14 @@ class _Changes:
         )
 
     def _is_in(self, thing: Truth, node: Truth) -> bool:
+        low, high = np.array(thing["min"]), np.array(thing["max"])
+        if max(node["size"][:2]) > LARGER * max(high[:2] - low[:2]):
+            return False
+        if node["size"][2] <= FLAT_M and node["z"] <= low[2] + LEVEL_M:
+            return False
         at = self._T_world_map @ [node["x"], node["y"], node["z"], 1.0]
         slack = np.array([BESIDE_M, BESIDE_M, LEVEL_M])
-        low, high = np.array(thing["min"]) - slack, np.array(thing["max"]) + slack
-        return bool(((low <= at[:3]) & (at[:3] <= high)).all())
+        return bool(((low - slack <= at[:3]) & (at[:3] <= high + slack)).all())
 
 
 def _volume(thing: Truth) -> float:

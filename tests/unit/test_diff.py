@@ -12,6 +12,7 @@ from afkb_mapping.memory.memory import Memory
 from afkb_mapping.memory.remembered import RememberedView
 from afkb_mapping.memory.visit import Visit
 from afkb_mapping.visits.alignment import T_first_second, is_continued_by
+from afkb_mapping.visits.body_points import look_at_body
 from afkb_mapping.visits.diff import compared
 from afkb_mapping.visits.things import ComparedThing
 from mapping_samples import view
@@ -109,6 +110,26 @@ def test_another_kind_of_thing_is_not_the_same_one_moved():
 def test_a_surface_that_depth_still_meets_is_unchanged_though_no_detector_spoke_of_it():
     low = seat("s", 2.0, 0.0, z=1.2, size=(0.2, 0.45, 0.02))
     assert told([low], [], after_m=2.0) == {"unchanged": ["s"]}
+
+
+@pytest.mark.parametrize(
+    ("after_m", "said"), [(2.0, "unchanged"), (4.0, "vanished"), (1.0, "unknown")]
+)
+def test_a_thing_is_there_where_depth_still_meets_its_shape(after_m, said):
+    old = thing("a", 2.0, 0.0, size=(0.1, 0.3, 0.3))
+    assert told([old], [], before_m=2.0, after_m=after_m) == {said: ["a"]}
+
+
+def test_what_stands_right_on_a_top_is_asked_only_of_rays_that_would_pass_over_that_top():
+    seen, points = view(0, depth_m=2.0), np.array([[2.0, 0.0, 1.0]])
+    assert look_at_body(seen, points, bottom_m=0.9).hit == 1.0
+    assert look_at_body(view(0, depth_m=4.0), points, bottom_m=0.9).empty == 1.0
+    assert look_at_body(seen, points, bottom_m=0.98).in_view == 0.0
+
+
+def test_another_thing_beside_the_place_or_of_another_height_is_not_the_same():
+    for other in (thing("b", 2.1, 0.0), thing("b", 2.0, 0.0, z=1.15)):
+        assert "unchanged" not in told([thing("a", 2.0, 0.0)], [other])
 
 
 def test_a_surface_that_a_visit_saw_in_parts_is_all_of_them():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from afkb.errors import MapError
 from afkb.flow import View
 from afkb_mapping.geometry import T_from_xy_yaw, inverse, planar, yaw_of
+from afkb_mapping.localisation.localiser import Localiser
 from afkb_mapping.localisation.questions import asked, localiser_of
 from afkb_mapping.memory.memory import Memory
+from afkb_mapping.memory.passed import RememberedViews
 
 Array = NDArray[np.float64]
 
@@ -39,11 +41,28 @@ def T_first_second(folder: Path, other: Path, memory: Memory) -> Array:
     to agree, as one may be wrong. Raises `MapError` where they don't: other places, other maps.
     """
     localiser, views = localiser_of(folder), memory.settled_views
+    for sense in (_laser_alone, _by_map):
+        located = _located(localiser, views, sense)
+        if len(located) >= min(LEAST_AGREEING, len(views)):
+            return _fitted(*zip(*located, strict=True))
+    raise MapError(
+        f"{other} can't be located in {folder}: another place, or too much of it has changed; "
+        "--transform X,Y,YAW says where its origin lies in the first one's frame"
+    )
+
+
+def _located(
+    localiser: Localiser, views: RememberedViews, sense: Callable[[View], View | None]
+) -> list[tuple[Array, Array]]:
+    """Answers that agree, (4, 4) each, and where in their own map they were asked, (2,)."""
     answers: list[Array] = []
     at: list[Array] = []
     agreeing: list[int] = []
     for start in _spread(max(len(views) - TOGETHER, 0) + 1):
-        together = [_by_map(views[i].view) for i in range(start, min(start + TOGETHER, len(views)))]
+        few = [sense(views[i].view) for i in range(start, min(start + TOGETHER, len(views)))]
+        together = [view for view in few if view is not None]
+        if not together:
+            continue
         found = localiser.locate(asked(together, np.eye(4)))
         if found.lost:
             continue
@@ -53,12 +72,7 @@ def T_first_second(folder: Path, other: Path, memory: Memory) -> Array:
         agreeing = _most_agreeing(answers, at)
         if len(agreeing) == ENOUGH_AGREEING:
             break
-    if len(agreeing) < min(LEAST_AGREEING, len(views)):
-        raise MapError(
-            f"{other} can't be located in {folder}: another place, or too much of it has changed; "
-            "--transform X,Y,YAW says where its origin lies in the first one's frame"
-        )
-    return _fitted([answers[i] for i in agreeing], [at[i] for i in agreeing])
+    return [(answers[i], at[i]) for i in agreeing]
 
 
 def _spread(count: int) -> list[int]:
@@ -71,6 +85,11 @@ def _by_map(view: View) -> View:
     """The view with its pose in the map in place of its odometry."""
     assert view.T_map_base is not None
     return replace(view, T_odom_base=view.T_map_base)
+
+
+def _laser_alone(view: View) -> View | None:
+    """The same without depth: what a camera expects all over a map takes seconds to work out."""
+    return None if view.scan is None else replace(_by_map(view), depth_m=None, camera=None)
 
 
 def _most_agreeing(answers: Sequence[Array], at: Sequence[Array]) -> list[int]:

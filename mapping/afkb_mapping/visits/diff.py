@@ -16,6 +16,7 @@ from afkb.store.shapes import Json
 from afkb_mapping.memory.memory import Memory
 from afkb_mapping.memory.storing import memory_of
 from afkb_mapping.visits.alignment import T_first_second, is_continued_by
+from afkb_mapping.visits.body_points import body_points
 from afkb_mapping.visits.clock import HOURS_BETWEEN, SECONDS_PER_HOUR
 from afkb_mapping.visits.looked_at import Verdict, verdicts
 from afkb_mapping.visits.things import (
@@ -28,9 +29,9 @@ from afkb_mapping.visits.things import (
 
 Array = NDArray[np.float64]
 
-FAR_M = 5.0
-"""A thing that is found this far away, mostly in another room, is half as alike as one beside its
-place."""
+FAR_M = 2.0
+"""A thing that is found this far away is half as alike as one beside its place: most are shoved
+about near where they stood, and what two visits say of one thing's category differs by a third."""
 APART = 1e3
 
 
@@ -106,8 +107,10 @@ def compared(
     difference = Difference(unchanged=[new[j].node for j in sorted(stayed_new)])
     lost = [t for i, t in enumerate(old) if i not in stayed_old]
     come = [t for j, t in enumerate(new) if j not in stayed_new]
-    fate = verdicts(lost, after.settled_views, T, seconds)
-    past = verdicts(come, before.settled_views, np.eye(4), seconds)
+    stood = body_points(lost, before.settled_views, np.eye(4))
+    fate = verdicts(lost, stood, after.settled_views, T, seconds)
+    stands = body_points(come, after.settled_views, T)
+    past = verdicts(come, stands, before.settled_views, np.eye(4), seconds)
     told = [*zip(lost, fate, strict=True), *zip(come, past, strict=True)]
     difference.unchanged += [t.node for t, v in told if v is Verdict.THERE]
     difference.unknown = [t.node for t, v in zip(lost, fate, strict=True) if v is Verdict.UNKNOWN]

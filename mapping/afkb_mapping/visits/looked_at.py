@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb.flow import View
 from afkb_mapping.entities import EXISTS_FROM
-from afkb_mapping.looks import LOOKED_AT_SHARE, eye_of, is_empty
+from afkb_mapping.looks import LOOKED_AT_SHARE, eye_of
 from afkb_mapping.memory.remembered import RememberedView
 from afkb_mapping.viewpoints import Viewpoints
-from afkb_mapping.visibility import Look, Sight
-from afkb_mapping.visits.persistence import aged, hazard_of, overlooked, seen_through
+from afkb_mapping.visibility import Sight
+from afkb_mapping.visits.body_points import look_at_body, may_show, placed
+from afkb_mapping.visits.persistence import aged, hazard_of, met_again, overlooked, seen_through
 from afkb_mapping.visits.things import ComparedThing
 
 Array = NDArray[np.float64]
@@ -22,6 +24,10 @@ Array = NDArray[np.float64]
 NEAR_M = 2.5
 """A small thing that no detector spoke of was looked at from no further than this: of further ones
 detectors miss most."""
+SEEN_THROUGH_SHARE = 0.5
+"""A thing of which so much is seen through has gone, though the rest may be out of the image."""
+TOLD_SHARE = 0.2
+"""A look from one side meets, or sees through, so much at least of the points on all its sides."""
 
 
 class Verdict(Enum):
@@ -34,35 +40,56 @@ class Verdict(Enum):
 
 @dataclass(slots=True, eq=False)
 class _Place:
-    """A thing's place, and what looks at it from different viewpoints have told so far."""
+    """A thing's place, and what looks at it from different viewpoints have told so far.
 
-    points_xy: Array
-    height_m: float
-    is_surface: bool
+    `body_xyz` (N, 3): points of it, if its own visit has measured any.
+    """
+
+    thing: ComparedThing
+    body_xyz: Array
     existence: float
-    viewpoints: Viewpoints
+    points_xy: Array = field(init=False)
+    viewpoints: Viewpoints = field(default_factory=Viewpoints)
     met: int = 0
     looks: int = 0
 
-    def look(self, found: Look, eye_xy: Array) -> None:
+    def __post_init__(self) -> None:
+        self.points_xy = self.thing.points_xy()
+
+    def look(self, view: View, sight: Sight, eye_xy: Array) -> None:
         """Take in one view's look; from where it was looked at before it tells nothing new."""
         middle = self.points_xy.mean(axis=0)
-        empty, met = is_empty(found), found.in_view >= LOOKED_AT_SHARE <= found.hit
-        if not self.is_surface and np.linalg.norm(eye_xy - middle) > NEAR_M:
+        if len(self.body_xyz):
+            found, share = look_at_body(view, self.body_xyz, self.thing.bottom_m), TOLD_SHARE
+        else:
+            found, share = sight.look(self.points_xy, self.thing.xyz[2]), LOOKED_AT_SHARE
+        empty = found.in_view >= share and found.empty >= LOOKED_AT_SHARE
+        empty |= found.in_view * found.empty >= SEEN_THROUGH_SHARE
+        met = found.in_view >= share and found.hit >= LOOKED_AT_SHARE
+        if not self._tells_if_met and np.linalg.norm(eye_xy - middle) > NEAR_M:
             met = False
         if not (empty or met) or not self.viewpoints.is_new(eye_xy, middle):
             return
         self.looks += 1
+        self.met += met
         if empty:
             self.existence = seen_through(self.existence)
-        elif self.is_surface:
-            self.met += 1
-        else:  # Something is there; as it was not told of, it is hardly what was there.
+        elif len(self.body_xyz):
+            self.existence = met_again(self.existence)
+        elif not self._tells_if_met:  # Something is there, perhaps what it stood on.
             self.existence = overlooked(self.existence)
+
+    @property
+    def _tells_if_met(self) -> bool:
+        """Whether depth that agrees tells that it is there: its shape is known."""
+        return self.thing.is_surface or len(self.body_xyz) > 0
 
     def verdict(self) -> Verdict:
         """A surface is there where depth meets it more often than it is seen through."""
-        if self.met and self.met >= self.looks - self.met:
+        is_there = self.met >= self.looks - self.met
+        if not self.thing.is_surface:
+            is_there = self._tells_if_met and self.existence >= EXISTS_FROM
+        if self.met and is_there:
             return Verdict.THERE
         if self.looks and self.existence < EXISTS_FROM:
             return Verdict.GONE
@@ -71,28 +98,24 @@ class _Place:
 
 def verdicts(
     things: Sequence[ComparedThing],
+    bodies: Sequence[Array],
     views: Iterable[RememberedView],
     T_things_views: Array,
     seconds: float,
 ) -> list[Verdict]:
     """Of things that another visit has seen, and this one did not detect in their places.
 
+    - `bodies`: points (N, 3) of each, by `body_points`.
     - `views`: of this visit; `T_things_views` (4, 4): from their map frame to that of the things.
     - `seconds`: from one visit to the other.
     """
     places = [
-        _Place(
-            points_xy=thing.points_xy(),
-            height_m=thing.xyz[2],
-            is_surface=thing.is_surface,
-            existence=aged(thing.existence, abs(seconds), hazard_of(thing.weight)),
-            viewpoints=Viewpoints(),
-        )
-        for thing in things
+        _Place(thing, body, aged(thing.existence, abs(seconds), hazard_of(thing.weight)))
+        for thing, body in zip(things, bodies, strict=True)
     ]
-    for remembered in views:
-        view = remembered.moved_to(T_things_views @ remembered.T_map_base).view
+    for view in placed(views, T_things_views):
         sight, eye = Sight(view), eye_of(view)
         for place in places:
-            place.look(sight.look(place.points_xy, place.height_m), eye)
+            if may_show(view, place.thing):
+                place.look(view, sight, eye)
     return [place.verdict() for place in places]

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from afkb_mapping.update_rules import against
+from afkb_mapping.update_rules import CERTAIN, against
 
 WEEK_S = 7 * 24 * 3600.0
 """How long a thing stays with the probability that the ontology states as its matching weight."""
@@ -31,6 +31,8 @@ view, is seen through by mistake only where the pose is off or the thing is see-
 OVERLOOKED_LIKELIHOOD_RATIO = 0.55
 """P(not detected | there) over P(not detected | a false cue): detectors find about half of the
 things they have in clear view, and repeat few of their errors from elsewhere."""
+MET_LIKELIHOOD_RATIO = 5.0
+"""P(depth meets its shape | there) over P(the same | gone): something as large has come."""
 GONE_BELOW = 0.2
 """What is less probable than this is taken to be gone, or never to have been."""
 
@@ -57,3 +59,8 @@ def seen_through(existence: float) -> float:
 def overlooked(existence: float) -> float:
     """Probability after a look that met something there, and did not tell what."""
     return against(existence, OVERLOOKED_LIKELIHOOD_RATIO)
+
+
+def met_again(existence: float) -> float:
+    """Probability after a look that met something of its shape, and did not tell what."""
+    return min(against(existence, MET_LIKELIHOOD_RATIO), CERTAIN)

@@ -21,9 +21,11 @@ SAMPLES = 12
 """So many points along the longer side of a thing are looked at."""
 SAME_HEIGHT_M = 0.05
 """Tops of one surface in two visits agree within this."""
-SAME_PLACE_M = 0.15
-"""A thing whose middle is found this near is where it was: what two visits' poses and partial views
-put between two measurements of it."""
+SAME_TOP_M = 0.03
+"""Tops of one thing do within this: twice what depth errs by at 2 to 3 m, in either visit."""
+SAME_PLACE_M = 0.06
+"""A thing whose middle is found this near is where it was: twice what the poses of two visits, and
+the laying of one map over the other, are off by; besides the part of it that one visit saw less."""
 SHARED_AREA = 0.5
 """Surfaces of which this part of the smaller one lies on the other are one."""
 SIZE_RATIO, SIZE_SLACK_M = 1.6, 0.05
@@ -56,6 +58,22 @@ class ComparedThing:
     def is_surface(self) -> bool:
         """Whether it is a flat top, and no body that affords support besides."""
         return SUPPORT in self.affords and self.size_xyz[2] <= SAME_HEIGHT_M
+
+    @property
+    def top_m(self) -> float:
+        """Height of its upper side above the floor, m."""
+        z, height = self.xyz[2], self.size_xyz[2]
+        return z if SUPPORT in self.affords else z + height / 2
+
+    @property
+    def bottom_m(self) -> float:
+        """Height of its foot above the floor, m."""
+        return self.top_m - self.size_xyz[2]
+
+    @property
+    def yaw(self) -> float:
+        """Direction of its length, rad."""
+        return float(str(self.node["yaw"]))
 
     def points_xy(self) -> Array:
         """(N, 2) m: points all over it, seen from above."""
@@ -109,9 +127,17 @@ def is_same_place(first: ComparedThing, second: ComparedThing) -> bool:
     if first.is_surface:
         level = abs(first.xyz[2] - second.xyz[2]) <= SAME_HEIGHT_M
         return level and shared_area(first, second) >= SHARED_AREA
+    apart = math.dist(first.xyz[:2], second.xyz[:2])
+    near = apart <= SAME_PLACE_M + _hidden_part(first, second)
+    tops = abs(first.top_m - second.top_m) <= SAME_TOP_M
     # What single views say of a thing's category wavers more than where it is.
-    near = math.dist(first.xyz, second.xyz) <= SAME_PLACE_M
-    return near and _as_large(first, second) and bool(first.affords & second.affords)
+    return near and tops and _as_large(first, second) and bool(first.affords & second.affords)
+
+
+def _hidden_part(first: ComparedThing, second: ComparedThing) -> float:
+    """How far apart, m, the middles of one thing are, of which one visit saw less."""
+    pairs = zip(first.size_xyz[:2], second.size_xyz[:2], strict=True)
+    return max(abs(a - b) for a, b in pairs) / 2
 
 
 def shared_area(first: ComparedThing, second: ComparedThing) -> float:
