@@ -31,6 +31,7 @@ pictures: $(VENV)/.default  ## make the pictures in the documents again
 	$(BIN)/python scripts/picture.py demo-map-early docs/early-map.svg edges ids
 	$(BIN)/afkb detect world:paper_home --frame 51 --pictures demo-map-early
 	cp demo-map-early/frame-000051.png docs/detected.png
+	$(BIN)/python -m bench.mapping deceived_hall --picture docs/deceived.svg
 
 pins: $(VENV)/.dev  ## write what is installed as the versions to test with
 	scripts/pin.sh $(BIN)/python

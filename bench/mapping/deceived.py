@@ -26,7 +26,8 @@ Array = NDArray[np.float64]
 
 SIGMA_M = 0.1
 """Of the likelihood field (Thrun et al., Probabilistic Robotics, 6.4): two cells."""
-REACH_M, STEP_M = 0.6, 0.05
+REACH_M = 0.6
+"""Every cell this near is tried."""
 REACH_RAD, STEP_RAD = math.radians(15), math.radians(1.5)
 MOST_BEAMS = 240
 TRUSTED_M = 5.0
@@ -42,14 +43,6 @@ class Field:
     fit: NDArray[np.float32]
     resolution_m: float
     origin_xy: Array
-
-    def at(self, points_xy: Array) -> Array:
-        """(...,) fit at points (..., 2), m; 0 outside."""
-        cells = np.floor((points_xy - self.origin_xy) / self.resolution_m).astype(np.int64)
-        high = np.array(self.fit.shape[::-1]) - 1
-        inside = ((cells >= 0) & (cells <= high)).all(axis=-1)
-        cells = np.clip(cells, 0, high)
-        return np.where(inside, self.fit[cells[..., 1], cells[..., 0]], 0.0)
 
 
 def field_of(grid: OccupancyGrid, occupied: NDArray[np.bool_], weights: Array) -> Field:
@@ -116,15 +109,31 @@ def best_pose(
     T = view.T_map_base
     every = max(1, len(weights) // MOST_BEAMS)
     ends = ends_xy[::every] - T[:2, 3]
-    w = weights[::every] / weights[::every].sum()
-    shifts = np.arange(-REACH_M, REACH_M + STEP_M / 2, STEP_M)
+    w = (weights[::every] / max(weights[::every].sum(), 1e-9)).astype(np.float32)
+    reach = round(REACH_M / field.resolution_m)
+    fit = np.pad(field.fit, reach)
     best, found = -1.0, (0.0, 0.0, 0.0)
     for turn in np.arange(-REACH_RAD, REACH_RAD + STEP_RAD / 2, STEP_RAD):
         turned = ends @ T_from_xy_yaw(0.0, 0.0, float(turn))[:2, :2].T + T[:2, 3]
-        for dx in shifts:
-            rows = turned[None] + np.column_stack([np.full(len(shifts), dx), shifts])[:, None]
-            scores = field.at(rows) @ w
-            at = int(scores.argmax())
-            if scores[at] > best:
-                best, found = float(scores[at]), (float(dx), float(shifts[at]), float(turn))
+        scores = _scores(turned, w, field, fit, reach)
+        row, col = np.unravel_index(int(scores.argmax()), scores.shape)
+        if scores[row, col] > best:
+            best = float(scores[row, col])
+            found = (
+                (int(col) - reach) * field.resolution_m,
+                (int(row) - reach) * field.resolution_m,
+                float(turn),
+            )
     return found
+
+
+def _scores(
+    ends_xy: Array, weights: Array, field: Field, padded: NDArray[np.float32], reach: int
+) -> Array:
+    """(2 reach + 1, 2 reach + 1) how well points (N, 2) fit, moved by so many rows and columns."""
+    cells = np.floor((ends_xy - field.origin_xy) / field.resolution_m).astype(np.int64)
+    inside = ((cells >= 0) & (cells < field.fit.shape[::-1])).all(axis=1)
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (2 * reach + 1, 2 * reach + 1))
+    cols, rows = cells[inside].T
+    scores: Array = np.tensordot(weights[inside], windows[rows, cols], axes=1)
+    return scores

@@ -5,43 +5,39 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import OccupancyGrid, View
 from afkb_mapping.geometry import T_from_xy_yaw
-from afkb_mapping.routes.route_map import Thing
+from bench.mapping.deceived_visits import Match
 
 Array = NDArray[np.float64]
 
 PIXELS_PER_M = 60.0
 MARGIN_M = 0.5
-COLOURS = {"metric": "#d02020", "affordance": "#1860c8"}
+COLOURS = {"metric": "#d02020", "affordance": "#1860c8", "static": "#189048"}
 SAID = {
     "metric": "matched with all alike",
     "affordance": "matched by movability",
+    "static": "what moves left out",
 }
 STYLE = "font-family:sans-serif;font-size:14px"
 
 
-def picture(
-    grid: OccupancyGrid,
-    occupied: NDArray[np.bool_],
-    things: list[Thing],
-    view: View,
-    ends_xy: Array,
-    poses: dict[str, tuple[float, float, float]],
-) -> str:
-    """The map's cells, its dynamic things, and what the view meets (N, 2), m, by each match."""
-    assert view.T_map_base is not None
-    cells = grid.origin_xy + (np.argwhere(occupied)[:, ::-1] + 0.5) * grid.resolution_m
+def picture(match: Match) -> str:
+    """The map's cells, its dynamic things, and what the view meets by each way of matching."""
+    assert match.view.T_map_base is not None
+    grid = match.grid
+    cells = grid.origin_xy + (np.argwhere(match.occupied)[:, ::-1] + 0.5) * grid.resolution_m
     low, high = cells.min(axis=0) - MARGIN_M, cells.max(axis=0) + MARGIN_M
     width, height = (high - low) * PIXELS_PER_M
     parts = [_dots(cells, low, high, "#b0b0b0", grid.resolution_m / 2)]
-    for thing in things:
+    for thing in match.moving:
         corners = " ".join(f"{x:.1f},{y:.1f}" for x, y in _pixels(thing.polygon_xy, low, high))
         parts.append(f'<polygon points="{corners}" fill="#f5c84255" stroke="#c89000"/>')
-    at = view.T_map_base[:2, 3]
-    for number, (name, (dx, dy, turn)) in enumerate(poses.items()):
+    at = match.view.T_map_base[:2, 3]
+    for number, (name, (dx, dy, turn)) in enumerate(match.off.items()):
         R = T_from_xy_yaw(0.0, 0.0, turn)[:2, :2]
-        parts.append(_dots((ends_xy - at) @ R.T + at + (dx, dy), low, high, COLOURS[name], 0.02))
+        parts.append(
+            _dots((match.ends_xy - at) @ R.T + at + (dx, dy), low, high, COLOURS[name], 0.02)
+        )
         off = f"{SAID[name]}: {np.hypot(dx, dy):.2f} m and {np.degrees(abs(turn)):.1f}° off"
         where = f'x="8" y="{18 + 18 * number}" fill="{COLOURS[name]}" style="{STYLE}"'
         parts.append(f"<text {where}>{off}</text>")

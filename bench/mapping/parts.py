@@ -23,6 +23,7 @@ PARTS = (
     "relations",
     "lightness",
     "paper",
+    "deceived_hall",
 )
 
 

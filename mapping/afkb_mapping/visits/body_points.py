@@ -24,12 +24,14 @@ from afkb_mapping.visits.things import ComparedThing
 
 Array = NDArray[np.float64]
 
-MOST_POINTS = 400
+MOST_POINTS = 200
 """So many points are kept of a thing; a mug at 2 m is some ten of a remembered view."""
 LEAST_POINTS = 12
 """Fewer say little of a thing's shape: it is then looked at as a body without form."""
 ABOVE_FOOT_M = 0.02
 """What is no higher than this above a thing's foot may be what it stands on: noise of depth."""
+MIDDLE = 4
+"""Of a pixel and those next to it, row by row."""
 TELLING = 1.5
 """A ray tells whether a point has gone if what is behind it is so many margins away."""
 
@@ -104,8 +106,8 @@ def look_at_body(view: View, points: Array, bottom_m: float) -> Look:
     """How a view looked at points (N, 3) of a thing that stands `bottom_m` above the floor.
 
     Only rays count that tell: on which, had the thing gone, what it stands on would be seen clearly
-    behind it. A point is *empty* where depth lies clearly behind it, *hit* where depth agrees;
-    what is in front hides it. `in_view`: share of the points that are either.
+    behind it. A point is *empty* where depth lies clearly behind it, and beside it too, *hit*
+    where depth agrees; what is in front hides it. `in_view`: share of the points that are either.
     """
     if view.depth_m is None:
         return NOT_LOOKED_AT
@@ -119,12 +121,26 @@ def look_at_body(view: View, points: Array, bottom_m: float) -> Look:
     asked &= (u >= 0) & (u < cols) & (v >= 0) & (v < rows)
     margin = MARGIN_M + MARGIN_PER_RANGE * z
     asked &= _behind_if_gone(view, points, bottom_m, z) >= TELLING * margin
-    measured = view.depth_m[v[asked], u[asked]]
-    behind = (measured - z[asked])[measured > 0]
-    empty = int((behind > margin[asked][measured > 0]).sum())
-    hit = int((np.abs(behind) <= margin[asked][measured > 0]).sum())
-    told = empty + hit
-    return Look(told / len(points), empty / told, hit / told) if told else NOT_LOOKED_AT
+    measured = _around(view.depth_m, u[asked], v[asked])
+    behind = np.where(measured > 0, measured - z[asked], np.nan)
+    hit = (np.abs(behind) <= margin[asked]).any(axis=0)
+    through = (behind > margin[asked]) | np.isnan(behind)
+    empty = through.all(axis=0) & (measured[MIDDLE] > 0)
+    told = int(hit.sum() + empty.sum())
+    if not told:
+        return NOT_LOOKED_AT
+    return Look(told / len(points), int(empty.sum()) / told, int(hit.sum()) / told)
+
+
+def _around(
+    depth_m: NDArray[np.float32], u: NDArray[np.int64], v: NDArray[np.int64]
+) -> NDArray[np.float32]:
+    """(9, N) depth of pixels and of those next to them: poses are off by about one."""
+    rows, cols = depth_m.shape
+    steps = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    return np.array(
+        [depth_m[np.clip(v + i, 0, rows - 1), np.clip(u + j, 0, cols - 1)] for i, j in steps]
+    )
 
 
 def _behind_if_gone(view: View, points: Array, bottom_m: float, depths: Array) -> Array:
