@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
+from scipy.ndimage import distance_transform_edt, gaussian_filter
 from scipy.signal import fftconvolve
 
 from afkb.flow import View
@@ -17,6 +18,7 @@ from afkb_mapping.localisation.readings import readings_of
 from afkb_mapping.localisation.sensor_model import HIT
 from afkb_mapping.localisation.slabs import SLAB_M
 from afkb_mapping.occupancy import RESOLUTION_M as CELL_M
+from bench.mapping.locate_changes import FLOOR_SLABS
 
 Array = NDArray[np.float64]
 Pose = tuple[float, float, float]
@@ -27,6 +29,25 @@ FIELD_SIGMA_M = 0.1
 TURN_DEG = 3
 VOXEL_M = 0.1
 """Of the clouds: twice that for normals, five times for features, as Open3D's tutorial has it."""
+TRIALS, CONFIDENCE = 50_000, 0.999
+"""Of RANSAC: so many at most, fewer if one is so surely the best."""
+ALIKE = 0.9
+"""Of the lengths of two edges that RANSAC takes for one: the tutorial's."""
+TUPLES, ITERATIONS = 1000, 64
+"""Of FGR: its defaults."""
+INWARD_CELLS = 2.0
+"""Around a point of the map, where it is looked for which side of it is free."""
+
+
+def peers_in(bands: HeightBands) -> Iterator[tuple[str, str, Peer]]:
+    """Each peer with its name and what it senses; built only when it is its turn."""
+    matching = scan_matching(bands)
+    yield "scan matching, laser", "laser", matching
+    nonsense = "laser, 60 % of the beams nonsense"
+    yield "scan matching, laser, nonsense", nonsense, matching
+    yield "scan matching, depth from above", "depth", matching
+    yield "Open3D FPFH and RANSAC, depth", "depth", feature_matching(bands, fast=False)
+    yield "Open3D FPFH and FGR, depth", "depth", feature_matching(bands, fast=True)
 
 
 def scan_matching(bands: HeightBands) -> Peer:
@@ -72,30 +93,55 @@ def feature_matching(bands: HeightBands, fast: bool) -> Peer:
     """Open3D's global registration of clouds: FPFH with RANSAC, or with FGR (`fast`)."""
     import open3d as o3d
 
-    reg = o3d.pipelines.registration
-    rows, cols, slabs = np.nonzero(bands.slabs == STANDS)
-    xyz = np.column_stack([cols, rows, slabs]) + 0.5
-    points = xyz * [CELL_M, CELL_M, SLAB_M] + [*bands.origin_xy, 0.0]
-    target, target_features = _described(points, None)
+    target = _map_cloud(bands)
+    target_features = _features(target)
+    match = _by_fgr if fast else _by_ransac
 
     def locate(view: View) -> Pose | None:
-        assert view.camera is not None and view.depth_m is not None
+        assert view.T_base_camera is not None
         o3d.utility.random.seed(1)
-        source, features = _described(_points(view), view.T_base_camera)
+        source = _cloud(_points(view))
+        source.orient_normals_towards_camera_location(view.T_base_camera[:3, 3])
         if len(source.points) < 10:
             return None
-        if fast:
-            found = reg.registration_fgr_based_on_feature_matching(
-                source, target, features, target_features
-            )
-        else:
-            found = reg.registration_ransac_based_on_feature_matching(
-                source, target, features, target_features, True, 1.5 * VOXEL_M
-            )
-        T = found.transformation
+        T = match(source, target, _features(source), target_features).transformation
         return float(T[0, 3]), float(T[1, 3]), yaw_of(T)
 
     return locate
+
+
+def _by_ransac(source: Any, target: Any, features: Any, target_features: Any) -> Any:
+    import open3d as o3d
+
+    reg = o3d.pipelines.registration
+    return reg.registration_ransac_based_on_feature_matching(
+        source,
+        target,
+        features,
+        target_features,
+        True,
+        1.5 * VOXEL_M,
+        ransac_n=3,
+        checkers=[
+            reg.CorrespondenceCheckerBasedOnEdgeLength(ALIKE),
+            reg.CorrespondenceCheckerBasedOnDistance(1.5 * VOXEL_M),
+        ],
+        criteria=reg.RANSACConvergenceCriteria(TRIALS, CONFIDENCE),
+    )
+
+
+def _by_fgr(source: Any, target: Any, features: Any, target_features: Any) -> Any:
+    import open3d as o3d
+
+    reg = o3d.pipelines.registration
+    option = reg.FastGlobalRegistrationOption(
+        maximum_correspondence_distance=0.5 * VOXEL_M,
+        iteration_number=ITERATIONS,
+        maximum_tuple_count=TUPLES,
+    )
+    return reg.registration_fgr_based_on_feature_matching(
+        source, target, features, target_features, option
+    )
 
 
 def _points(view: View) -> Array:
@@ -109,14 +155,34 @@ def _points(view: View) -> Array:
     return points
 
 
-def _described(points: Array, T_camera: Array | None):  # type: ignore[no-untyped-def]
-    """A cloud with normals, towards the camera if there is one, and its features."""
+def _map_cloud(bands: HeightBands) -> Any:
+    """What stands in a map, as a cloud whose normals point to where it is free."""
+    import open3d as o3d
+
+    solid = bands.slabs == STANDS
+    solid[..., :FLOOR_SLABS] = False
+    xyz = (np.argwhere(solid)[:, [1, 0, 2]] + 0.5) * [CELL_M, CELL_M, SLAB_M]
+    cloud = _cloud(xyz)
+    free = gaussian_filter((bands.slabs == FREE).astype(np.float32), INWARD_CELLS)
+    cols, rows, slabs = (np.asarray(cloud.points) / [CELL_M, CELL_M, SLAB_M]).astype(int).T
+    along_y, along_x, up = (g[rows, cols, slabs] for g in np.gradient(free))
+    normals = np.asarray(cloud.normals)
+    inwards = (normals * np.column_stack([along_x, along_y, up])).sum(axis=1)
+    cloud.normals = o3d.utility.Vector3dVector(np.where(inwards[:, None] < 0, -normals, normals))
+    return cloud.translate([*bands.origin_xy, 0.0])
+
+
+def _cloud(points: Array) -> Any:
+    """Points (N, 3), m, one a voxel, with normals."""
     import open3d as o3d
 
     cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points)).voxel_down_sample(VOXEL_M)
     cloud.estimate_normals(o3d.geometry.KDTreeSearchParamHybrid(2 * VOXEL_M, 30))
-    if T_camera is not None:
-        cloud.orient_normals_towards_camera_location(T_camera[:3, 3])
+    return cloud
+
+
+def _features(cloud: Any) -> Any:
+    import open3d as o3d
+
     near = o3d.geometry.KDTreeSearchParamHybrid(5 * VOXEL_M, 100)
-    features = o3d.pipelines.registration.compute_fpfh_feature(cloud, near)  # type: ignore[call-arg]
-    return cloud, features
+    return o3d.pipelines.registration.compute_fpfh_feature(cloud, near)  # type: ignore[call-arg]

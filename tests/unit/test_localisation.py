@@ -18,7 +18,7 @@ from afkb_mapping.localisation.slabs import SLAB_M, SLABS
 from depth_samples import FLOOR, Box, view_of
 
 MAPPED_FROM = [(2, 2, 0), (2.5, 2.5, 1), (5, 2, 0), (7, 2, 2), (7, 4, 0), (3, 3, 2)]
-ASKED_FROM = [(2.3, 1.7, 0.7), (6.6, 2.4, -2.0)]
+ASKED_FROM = [(2.3, 1.7, 0.7), (7.3, 2.2, -2.0)]
 
 
 def view_at(pose, range_max=12.0):

@@ -36,6 +36,7 @@ class Surroundings:
     - `at_laser` (rows, cols): of what the laser meets. `in_space` (rows, cols, SLABS): of all.
     - `places` (P, 2): row and column, in cells of `PLACE_M`, of where sensors may be; `index`
       (rows / 2, cols / 2) their numbers, -1 for none; `stand` numbers of those where a base fits.
+    - `unseen` (rows, cols, SLABS): of what is there, nothing is known.
     """
 
     origin_xy: NDArray[np.float64]
@@ -44,6 +45,7 @@ class Surroundings:
     places: NDArray[np.int64]
     index: NDArray[np.int32]
     stand: NDArray[np.int64]
+    unseen: NDArray[np.bool_]
 
 
 def surroundings_of(bands: HeightBands) -> Surroundings:
@@ -70,6 +72,7 @@ def surroundings_of(bands: HeightBands) -> Surroundings:
         places,
         index,
         np.flatnonzero(fits[is_place]),
+        np.asarray(bands.slabs == UNKNOWN, np.bool_),
     )
 
 

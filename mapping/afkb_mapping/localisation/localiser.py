@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import logsumexp
 
 from afkb_mapping.localisation.bands import HeightBands
 from afkb_mapping.localisation.candidates import Candidate
 from afkb_mapping.localisation.expectation import surroundings_of
-from afkb_mapping.localisation.readings import Readings
+from afkb_mapping.localisation.readings import Readings, joined
 from afkb_mapping.localisation.search import Search
 from afkb_mapping.localisation.sensor_model import (
     HIT,
@@ -23,12 +24,43 @@ from afkb_mapping.localisation.sensor_model import (
 
 Array = NDArray[np.float64]
 
-ELSEWHERE_LASER, ELSEWHERE_DEPTH = -1.3, -0.75
-"""Mean log-likelihood of a hit at the likeliest pose in a home that is not in the map, of a laser
-and of depth; measured in two homes, each asked in the other's map and, for what it costs, in its
-own and in that of a later visit. A laser's is so low that most of its beams may be blind: its
-readings all around fit one pose so much better than all others that this alone tells."""
-SURE = 0.9
+
+@dataclass(frozen=True, slots=True)
+class Odds:
+    """Logistic model of whether the likeliest pose is right, of a sensor; log-odds.
+
+    - `lead`: for the root of by how much its log-likelihood leads those of all others together.
+    - `fit`: for its log-likelihood over what is met, per independent reading.
+    - `blocked`: for the share of readings that meet something: from near a wall much is explained
+      by any wall.
+    - `whole`: for how much the fit is better than `WHOLE_FIT`.
+    """
+
+    lead: float
+    fit: float
+    blocked: float
+    whole: float
+    at_zero: float
+
+    def probability(self, lead: float, fit: float, blocked: float) -> float:
+        """That the likeliest pose is right."""
+        logit = self.lead * math.sqrt(max(lead, 0.0)) + self.fit * fit + self.blocked * blocked
+        logit += self.whole * max(fit - WHOLE_FIT, 0.0) + self.at_zero
+        return 1 / (1 + math.exp(-logit))
+
+
+DEPTH = Odds(lead=1.81, fit=9.24, blocked=-5.4, whole=0.0, at_zero=3.0)
+LASER = Odds(lead=3.65, fit=0.59, blocked=0.0, whole=6.0, at_zero=-4.82)
+"""Fitted by logistic regression to views of two homes, each asked in a map of every second view of
+its own and in the other's, where no answer is right; a laser with whole scans and with 60 % of the
+beams nonsense. Only `whole` is not: no scan of theirs was whole and in doubt."""
+WHOLE_FIT = -0.5
+"""Whole scans fit their own home to -0.25 at least, another's to -0.69 at most."""
+FARTHEST_LEAD = 15.0
+"""A view's. More tells no more: what is left to err is that the place is not in the map."""
+LEAST_WEIGHT = 5.0
+"""Fewer independent readings than these tell nothing of how well a pose fits."""
+SURE = 0.7
 """Below this probability the robot is lost."""
 STEP_M, STEP_RAD = 0.05, math.radians(2.0)
 LEAST_SIGMAS = (0.02, 0.02, math.radians(0.5))
@@ -65,7 +97,7 @@ class Localiser:
         if not found:
             return Located(True, math.nan, math.nan, math.nan, 0.0, np.full((3, 3), math.nan))
         best = found[0]
-        probability = _probability(found, sum(_elsewhere(view) for view in views))
+        probability = _probability(found, views)
         return Located(
             probability < SURE,
             best.x,
@@ -91,16 +123,14 @@ class Localiser:
         return np.diag(1 / information + np.square(LEAST_SIGMAS))
 
 
-def _elsewhere(readings: Readings) -> float:
-    """Log-likelihood of what was read, if it was read in a place that the map doesn't hold."""
-    hits = readings.row[readings.kind == HIT]
-    laser = int((hits == LASER_ROW).sum())
-    depth = len(hits) - laser
-    return ELSEWHERE_LASER * INDEPENDENT_LASER * laser + ELSEWHERE_DEPTH * INDEPENDENT_DEPTH * depth
-
-
-def _probability(found: Sequence[Candidate], elsewhere: float) -> float:
-    """Of the best candidate among the others, and a place that isn't in the map."""
-    logs = np.array([*(c.log_likelihood for c in found), elsewhere])
-    weights = np.exp(logs - logs.max())
-    return float(weights[0] / weights.sum())
+def _probability(found: Sequence[Candidate], views: Sequence[Readings]) -> float:
+    """Of the best candidate; where a laser has read, its odds are those of all readings."""
+    readings = joined(views)
+    logs = np.array([c.log_likelihood for c in found])
+    lead = -float(logsumexp(logs[1:] - logs[0])) if len(logs) > 1 else math.inf
+    met = readings.kind == HIT
+    by_laser = readings.row == LASER_ROW
+    weights = np.where(by_laser, INDEPENDENT_LASER, INDEPENDENT_DEPTH)
+    fit = logs[0] / max(float(weights[met].sum()), LEAST_WEIGHT)
+    odds = LASER if by_laser.any() else DEPTH
+    return odds.probability(min(lead, FARTHEST_LEAD * len(views)), float(fit), float(met.mean()))

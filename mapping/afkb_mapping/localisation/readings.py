@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from afkb_mapping.localisation.sensor_model import (
     LASER_ROW,
 )
 from afkb_mapping.localisation.slabs import SLAB_M, SLABS
+from afkb_mapping.odometry import IMAGE_FLOOR, step_covariance
 from afkb_mapping.panorama import NOISE_SIGMAS, STEP_OVER_M
 from afkb_mapping.sensor_noise import depth_sigma
 
@@ -38,6 +39,8 @@ class Readings:
     - `bearing`: (N,) rad, base frame. `range_m`: (N,), along the ray.
     - `row`: (N,) `LASER_ROW`, or 1 + index of the ray's elevation in `ELEVATIONS`.
     - `kind`: (N,) `HIT`, or `CLEAR` up to there.
+    - `sigmas`: (3,) m, m, rad, by how much odometry errs between where the sensor's base stood and
+      the frame of the readings.
     """
 
     origins_xyz: Array
@@ -46,17 +49,19 @@ class Readings:
     range_m: Array
     row: NDArray[np.int64]
     kind: NDArray[np.int64]
+    sigmas: Array = field(default_factory=lambda: np.array(IMAGE_FLOOR))
 
     def __len__(self) -> int:
         return len(self.bearing)
 
     def seen_from(self, T: Array) -> Readings:
-        """The same readings in the frame in which their base stands at T (4, 4), level."""
+        """The same readings in the frame in which odometry has their base at T (4, 4), level."""
         yaw = yaw_of(T)
         c, s = math.cos(yaw), math.sin(yaw)
         turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
         origins = self.origins_xyz @ turn + np.array([*T[:2, 3], 0.0])
-        return replace(self, origins_xyz=origins, bearing=self.bearing + yaw)
+        sigmas = np.hypot(IMAGE_FLOOR, np.sqrt(np.diag(step_covariance(T, np.eye(4)))))
+        return replace(self, origins_xyz=origins, bearing=self.bearing + yaw, sigmas=sigmas)
 
     def rays(self) -> Array:
         """(N, 3) unit vectors along which was read, base frame."""

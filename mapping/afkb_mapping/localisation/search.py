@@ -18,6 +18,7 @@ from afkb_mapping.localisation.sensor_model import (
     LASER_ROW,
     STEP_M,
     STEPS,
+    UNSEEN,
     log_likelihoods,
 )
 
@@ -34,13 +35,12 @@ FIRST_READINGS, CLOSER_READINGS, EXACT_READINGS = 150, 100, 400
 TRIED, CANDIDATES = 60, 12
 """So many of the first round are looked at closely, and so many of those are made exact."""
 CLOSER = ((0.1, 5.0),)
-EXACT = ((0.05, 2.5), (0.02, 1.0), (0.01, 0.3))
+EXACT = ((0.1, 2.5), (0.05, 2.5), (0.02, 1.0), (0.01, 0.3))
+HELD = ((0.05, 2.5), (0.02, 1.0))
 """Steps (m, degrees) in which a candidate climbs to its peak: both move what is 1 m off alike, so
-that it may circle what it looks at; short steps go along the axes only."""
+that it may circle what it looks at; short steps go along the axes only. `HELD`: by odometry."""
+SHORT_M = 0.05
 MOST_STEPS = 10
-ODOMETRY_SIGMAS = (0.05, 0.05, math.radians(2.0))
-"""By how much (m, m, rad) odometry errs between views that are asked together: two per cent of a
-turn of 90°, a few of a step."""
 EYE_STEP_M = 0.05
 """Cameras whose heights differ by less expect the same."""
 MOST_EYES = 4
@@ -124,7 +124,7 @@ class Search:
 
     def _relaxed(self, start: Candidate, views: Sequence[Readings]) -> Candidate:
         """Each view where it fits best, as far as odometry errs; the pose of the last."""
-        found = [self._climbed(start, view, EXACT[:2], is_held=True) for view in views]
+        found = [self._climbed(start, view, HELD, is_held=True) for view in views]
         return replace(found[-1], log_likelihood=sum(c.log_likelihood for c in found))
 
     def _climbed(
@@ -140,10 +140,10 @@ class Search:
         for step_m, step_deg in rounds:
             steps = np.array([step_m, step_m, math.radians(step_deg)])
             for _ in range(MOST_STEPS):
-                around = pose + (_AROUND if step_m >= EXACT[0][0] else _ALONG_AXES) * steps
+                around = pose + (_AROUND if step_m >= SHORT_M else _ALONG_AXES) * steps
                 found = self._at(around, readings, lines)
                 if is_held:
-                    off = (around - start.pose) / ODOMETRY_SIGMAS
+                    off = (around - start.pose) / readings.sigmas
                     found -= 0.5 * np.square(off).sum(axis=1)
                 top = int(np.argmax(found))
                 best, pose = float(found[top]), around[top]
@@ -162,12 +162,14 @@ class Search:
             poses - np.array([*self._around.origin_xy, 0.0]),
             self._around.at_laser,
             self._around.in_space,
+            self._around.unseen,
             readings.origins_xyz,
             readings.origin,
             readings.rays(),
             readings.range_m,
             readings.row,
             lines,
+            INDEPENDENT_DEPTH * math.log(UNSEEN),
         )
 
 

@@ -11,6 +11,8 @@ from afkb_mapping.kernels import kernel
 from afkb_mapping.localisation.expectation import PLACE_M, TURNS
 from afkb_mapping.localisation.rays import ray_in_plane, ray_in_space
 from afkb_mapping.localisation.sensor_model import LASER_ROW, STEP_M, STEPS
+from afkb_mapping.localisation.slabs import SLAB_M
+from afkb_mapping.occupancy import RESOLUTION_M as CELL_M
 
 Array = NDArray[np.float64]
 
@@ -79,16 +81,19 @@ def at_poses(
     poses: Array,
     at_laser: NDArray[np.uint8],
     in_space: NDArray[np.uint8],
+    unseen: NDArray[np.bool_],
     origins_xyz: Array,
     origin: NDArray[np.int64],
     rays: Array,
     range_m: Array,
     row: NDArray[np.int64],
     lines: NDArray[np.float32],
+    if_unseen: float,
 ) -> Array:
     """(N,): summed log-likelihood with the base at each pose: x, y (m, from the corner), yaw.
 
-    `rays`: (N, 3) unit vectors in the base frame.
+    `rays`: (N, 3) unit vectors in the base frame; `if_unseen`: least log-likelihood of a camera's
+    reading that ends where nothing is known.
     """
     found = np.zeros(len(poses))
     for p in range(len(poses)):
@@ -103,5 +108,19 @@ def at_poses(
                 reach = ray_in_plane(at_laser, x0, y0, dx, dy, farthest)
             else:
                 reach = ray_in_space(in_space, x0, y0, oz, dx, dy, rays[k, 2], farthest)
-            found[p] += lines[k, min(int(reach / STEP_M + 0.5), STEPS - 1)]
+            value = lines[k, min(int(reach / STEP_M + 0.5), STEPS - 1)]
+            if value < if_unseen and row[k] != LASER_ROW and reach > range_m[k]:
+                row_end = int((y0 + dy * range_m[k]) / CELL_M)
+                col_end = int((x0 + dx * range_m[k]) / CELL_M)
+                slab_end = int((oz + rays[k, 2] * range_m[k]) / SLAB_M)
+                if _is_unseen(unseen, row_end, col_end, slab_end):
+                    value = np.float32(if_unseen)
+            found[p] += value
     return found
+
+
+@kernel
+def _is_unseen(unseen: NDArray[np.bool_], row: int, col: int, slab: int) -> bool:
+    if not (0 <= row < unseen.shape[0] and 0 <= col < unseen.shape[1]):
+        return True
+    return bool(unseen[row, col, min(max(slab, 0), unseen.shape[2] - 1)])

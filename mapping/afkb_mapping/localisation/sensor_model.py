@@ -27,11 +27,13 @@ ELEVATIONS = np.radians(np.arange(-60.0, 31.0, 6.0))
 ROWS = 1 + len(ELEVATIONS)
 TALL_M = 1.1
 """What stands higher is a wall or a wardrobe; seats, tables, beds and chairs' backs end below."""
-NEARER_LASER, NEARER_LOW, NEARER_TALL = 0.20, 0.20, 0.10
+NEARER_LASER, NEARER_LOW, NEARER_TALL = 0.20, 0.10, 0.05
 """Likelihood, over that of agreeing, of meeting something where the map has nothing: what a person
 or a chair does; wardrobes come seldom."""
-BEYOND_LASER, BEYOND_LOW, BEYOND_TALL = 0.08, 0.05, 0.02
+BEYOND_LASER, BEYOND_LOW, BEYOND_TALL = 0.08, 0.10, 0.05
 """... of looking through what the map has. A laser at shin height looks past thin legs."""
+UNSEEN = 0.20
+"""... of a camera that meets something where the map knows nothing: it may be so."""
 INDEPENDENT_LASER, INDEPENDENT_DEPTH = 0.06, 0.25
 """Neighbouring readings err together: so much of one counts as evidence of its own."""
 
