@@ -55,11 +55,6 @@ class Lost:
     def __bool__(self) -> bool:
         return self._count > 0
 
-    def check(self, view: View) -> None:
-        """Raise `BadFrame` for a view that shows nothing, if the robot is lost."""
-        if self:
-            raise BadFrame(WHY)
-
     def look(
         self,
         view: View,

@@ -58,8 +58,8 @@ class PlacingRecord:
         if self.lost:
             notes.append(
                 f"lost from frame {self.first_lost} on: {self.lost} views look through what is "
-                "mapped where odometry has them, and were skipped (odometry jumped, the robot was "
-                "carried, or another place's recording follows)"
+                "mapped where odometry has them, or came just before such, and were skipped "
+                "(odometry jumped, the robot was carried, or another place's recording follows)"
             )
         notes += self.found_again
         if self.blind:

@@ -15,15 +15,15 @@ from afkb.errors import BadFrame
 from afkb.flow import View
 from afkb_mapping.doubt import contradicts, is_confirmed, is_doubtful
 from afkb_mapping.geometry import T_from_xy_yaw, inverse
-from afkb_mapping.held_views import HELD_LOOKS, HeldViews
+from afkb_mapping.held_views import HeldViews
 from afkb_mapping.lost import WHY, Lost
+from afkb_mapping.map_so_far import MapSoFar
 from afkb_mapping.odometry import step_covariance
 from afkb_mapping.placing_record import PlacingRecord
 from afkb_mapping.probation import Probation
 from afkb_mapping.scan_matching import LocalMap, Match, agreement, rotation
-from afkb_mapping.scan_surface import SurfacePoints, no_surface
+from afkb_mapping.scan_surface import SurfacePoints
 from afkb_mapping.seen_through import compared
-from afkb_mapping.surface_map import SurfaceMap
 from afkb_mapping.view_matching import GOOD_OVERLAP, MAX_DEVIATION, best_match, deviation
 from afkb_mapping.view_surface import ViewSurface, surface_in_map
 
@@ -41,8 +41,6 @@ IMAGES_IN_A_ROW = 2
 few views, one by itself often does after some drift. A scan, which sees all round, needs no second.
 """
 CONTRADICTED = "it looks through what is mapped where odometry has it"
-NOTHING = ViewSurface(no_surface(), no_surface())
-"""What is held of a view that was placed but doesn't change the map."""
 RADIUS_M = 15.0
 """Map within this distance of the robot takes part in a match, whatever the sensor's range."""
 
@@ -66,8 +64,7 @@ class ScanRegistration:
     """Places views one after another; the first one defines the map frame.
 
     `T_map_odom` takes the source's pose frame to the map frame at the first view (levelling).
-    `record` is told where the robot was lost and found again; `held`: views that were placed by
-    their image and may yet turn out to have been taken elsewhere.
+    `record` is told where the robot was lost and found again.
     """
 
     def __init__(self, T_map_odom: Array, record: PlacingRecord | None = None) -> None:
@@ -77,10 +74,14 @@ class ScanRegistration:
         self._T_odom_base: Array | None = None
         self._covariance = np.zeros((3, 3))
         self._drift = np.zeros((3, 3))
-        self._scans, self._images = SurfaceMap(), SurfaceMap()
+        self._map = MapSoFar()
         self._unmatched = self._contradicted = 0
         self._probation: Probation | None = None
-        self.held = HeldViews()
+
+    @property
+    def held(self) -> HeldViews:
+        """Views that were placed by their image and may yet turn out to have been elsewhere."""
+        return self._map.held
 
     def place(self, view: View) -> PlacedPose:
         """Where the view was taken; what it sees becomes part of the map that later ones match.
@@ -96,50 +97,43 @@ class ScanRegistration:
         self._T_odom_base = view.T_odom_base
         seen = surface_in_map(view, T_predicted)
         if seen.is_blind:
-            self._lost.check(view)
+            if self._lost or self._probation:
+                raise BadFrame(WHY)
             self._record.blind += 1
-            self.held.hold(view, NOTHING)
+            self._map.keep_waiting(view)
             return PlacedPose(T_predicted, self._covariance + self._drift, False, 0.0)
-        if not len(self._map_of(seen)):
-            self._take_in(seen)
-            self.held.settled += 1
+        if not len(self._map.of(seen)):
+            self._map.settle(seen)
             return PlacedPose(T_predicted, self._covariance + self._drift, True, 1.0)
         return self._match(view, seen, T_predicted)
 
     def recall(self, view: View) -> None:
         """Make what a placed view of an earlier visit shows part of the map, as it is placed."""
         assert view.T_map_base is not None
-        self.held.settled += 1
-        self._take_in(surface_in_map(view, view.T_map_base))
+        self._map.settle(surface_in_map(view, view.T_map_base))
 
-    def _take_in(self, seen: ViewSurface) -> None:
-        self._scans.add(seen.scan)
-        self._images.add(seen.image)
-
-    def _map_of(self, seen: ViewSurface) -> SurfaceMap:
-        return self._scans if seen.by_laser else self._images
+    def end(self) -> None:
+        """No more views come: those whose place has not become sure by now are taken back."""
+        if self._probation:
+            self._record.withdraw(len(self.held.withdraw()))
+        self.held.release()
 
     def _match(self, view: View, seen: ViewSurface, T_predicted: Array) -> PlacedPose:
         pivot = T_predicted[:2, 3].copy()
         prior = self._drift + np.diag(np.square(seen.odometry_floor))
         surface = seen.surest.near(pivot, RADIUS_M)
         reach = float(np.linalg.norm(surface.points_xy - pivot, axis=1).max()) + NEAR_M
-        local_map = LocalMap(self._map_of(seen).near(pivot, reach))
+        local_map = LocalMap(self._map.of(seen).near(pivot, reach))
         match = best_match(surface, local_map, pivot, prior)
         fits = match is not None and match.overlap >= GOOD_OVERLAP
         if (self._lost or self._probation) and fits and seen.by_laser:
             self._be_found(view, 0.0, 0.0)  # it sees all round: hardly by chance
         contradicted = not fits and contradicts(match, surface, local_map, pivot)
         self._contradicted = self._contradicted + 1 if contradicted else 0
-        if (
-            self._probation
-            and match is not None
-            and fits
-            and deviation(match, prior) < MAX_DEVIATION
-        ):
-            confirmed = is_confirmed(match, surface, local_map, pivot)
-            return self._go_on_probation(view, seen, match, T_predicted, confirmed)
         if self._probation:
+            if fits and match is not None and deviation(match, prior) < MAX_DEVIATION:
+                confirmed = is_confirmed(match, surface, local_map, pivot)
+                return self._go_on_probation(view, seen, match, T_predicted, confirmed)
             self._doubt(view, contradicted)
         if self._lost or self._contradicted >= (1 if seen.by_laser else IMAGES_IN_A_ROW):
             return self._look_for_place(view, seen, T_predicted, prior)
@@ -161,10 +155,9 @@ class ScanRegistration:
         self._unmatched = self._unmatched + 1 if doubtful else 0
         corrected, placed = self._corrected(seen, match, T_predicted)
         if not doubtful or self._unmatched > UNMATCHED_VIEWS:
-            self._take_in(corrected)
-            self._hold(view, corrected, seen.by_laser)
+            self._map.take_in(view, corrected)
         else:
-            self._hold(view, NOTHING, seen.by_laser)
+            self._map.keep_waiting(view)
         return placed
 
     def _corrected(
@@ -183,8 +176,8 @@ class ScanRegistration:
     ) -> PlacedPose:
         """A lost robot looks for where its last views fit the map, near odometry or anywhere."""
         if not self._lost:
-            self._take_back()
-        surface_map = self._map_of(seen)
+            self._record.withdraw(self._map.take_back())
+        surface_map = self._map.of(seen)
         match = self._lost.look(view, seen, T_predicted, prior, surface_map, self._record)
         self._lost.end()
         self._covariance = inverse(match.information)
@@ -194,7 +187,7 @@ class ScanRegistration:
             return self._settle(view, seen, match, T_predicted, doubtful=False)
         self._probation = Probation(view.T_odom_base, shift, turn)
         corrected, placed = self._corrected(seen, match, T_predicted)
-        self.held.hold(view, corrected)
+        self._map.keep_waiting(view, corrected)
         return placed
 
     def _go_on_probation(
@@ -207,7 +200,7 @@ class ScanRegistration:
             raise BadFrame(WHY)
         self._covariance = inverse(match.information)
         corrected, placed = self._corrected(seen, match, T_predicted)
-        self.held.hold(view, corrected)
+        self._map.keep_waiting(view, corrected)
         self._probation.count(view.T_odom_base, confirmed)
         if self._probation.is_passed:
             self._be_found(view, self._probation.metres, self._probation.degrees)
@@ -226,37 +219,10 @@ class ScanRegistration:
     def _be_found(self, view: View, metres: float, degrees: float) -> None:
         """The robot is surely so far from where odometry had it; what it saw becomes map."""
         if self._probation:
-            for held in self.held.release():
-                self._take_in(held.seen)
+            self._map.confirm()
         self._lost.end()
         self._probation = None
         self._record.find(view.index, metres, degrees)
-
-    def _hold(self, view: View, taken_in: ViewSurface, by_laser: bool) -> None:
-        """Remember what a view made part of the map: what an image placed may be taken back."""
-        if by_laser:
-            self.held.release()
-        else:
-            self.held.hold(view, taken_in)
-
-    def end(self) -> None:
-        """No more views come: those whose place has not become sure by now are taken back."""
-        if self._probation:
-            self._record.withdraw(len(self.held.withdraw()))
-        self.held.release()
-
-    def _take_back(self) -> None:
-        """What was placed just before one got lost was, most likely, placed wrongly already.
-
-        A map that hardly holds more than that is kept: in the rest nothing could be found.
-        """
-        if self.held.settled < HELD_LOOKS:
-            self.held.release()
-        taken_back = self.held.withdraw()
-        for held in taken_back:
-            self._scans.remove(held.seen.scan)
-            self._images.remove(held.seen.image)
-        self._record.withdraw(len(taken_back))
 
     def _go_on_by_odometry(
         self,
@@ -272,10 +238,9 @@ class ScanRegistration:
         _, found = local_map.nearest(surface, NEAR_M)
         is_new = found.mean() < 1 - NEW_GROUND or self._unmatched > UNMATCHED_VIEWS
         if is_new and not compared(surface, local_map.surface, T_predicted[:2, 3]).disagrees:
-            self._take_in(seen)
-            self._hold(view, seen, seen.by_laser)
+            self._map.take_in(view, seen)
         else:
-            self._hold(view, NOTHING, seen.by_laser)
+            self._map.keep_waiting(view)
         return PlacedPose(T_predicted, self._covariance + self._drift, False, overlap)
 
 
