@@ -15,6 +15,7 @@ from afkb.flow import OccupancyGrid
 from afkb_mapping.rooms import segment_rooms
 from bench.detectors.data import NoData, data_folder
 from bench.floor_plans import FREE_FROM, RESOLUTION_M, TRUTH, read_plan
+from bench.mapping.room_jitter import steadiness
 from bench.mapping.room_peers import morphological, voronoi, watershed
 from bench.mapping.room_scores import MEASURES, Labels, Scores, regions, scores
 
@@ -35,6 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--resolution", type=float, default=RESOLUTION_M, help="m a pixel")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="these plans")
     parser.add_argument("--no-peers", action="store_true", help="ours alone")
+    parser.add_argument("--jitter", action="store_true", help="how steady rooms are, instead")
 
 
 def run(args: argparse.Namespace) -> dict[str, dict[str, dict[str, Scores]]]:
@@ -45,10 +47,11 @@ def run(args: argparse.Namespace) -> dict[str, dict[str, dict[str, Scores]]]:
     if not names:
         raise NoData(f"no NAME{TRUTH} in {args.folder}; name a folder with --folder")
     methods = {"afkb": afkb} if args.no_peers else METHODS
+    measured = steady if args.jitter else scored
     return {
         method: {
             variant: {
-                name: scored(segmenter, args.folder, name, suffix, args.resolution)
+                name: measured(segmenter, args.folder, name, suffix, args.resolution)
                 for name in names
                 if (args.folder / f"{name}{suffix}.png").is_file()
             }
@@ -72,6 +75,14 @@ METHODS: dict[str, Segmenter] = {
 }
 
 
+def steady(
+    segmenter: Segmenter, folder: Path, name: str, suffix: str, resolution_m: float
+) -> Scores:
+    """How steady one plan's rooms are, by drawing."""
+    free = read_plan(folder / f"{name}{suffix}.png") >= FREE_FROM
+    return steadiness(segmenter, free, resolution_m)
+
+
 def scored(
     segmenter: Segmenter, folder: Path, name: str, suffix: str, resolution_m: float
 ) -> Scores:
@@ -86,6 +97,9 @@ def scored(
 
 def table(result: dict[str, dict[str, dict[str, Any]]]) -> Iterator[str]:
     """Ours plan by plan; of each method the means over the plans."""
+    if "mcc" not in next(iter(result["afkb"]["empty"].values())):
+        yield from steady_table(result)
+        return
     for variant, plans in result["afkb"].items():
         yield HEAD.format(variant)
         for name, s in plans.items():
@@ -108,3 +122,19 @@ def said(name: str, of: Sequence[Scores]) -> str:
     seconds = max(s["seconds"] for s in of)
     numbers = f"{found:6d} {true:2d} {seconds:5.2f}"
     return f"{name:52} {p:9.3f} {r:6.3f} {mcc:5.3f} {cells:9.3f} {numbers}"
+
+
+def steady_table(result: dict[str, dict[str, dict[str, Any]]]) -> Iterator[str]:
+    """Of each method and variant, mean and least over the plans by drawing."""
+    yield "rooms of the plan drawn another way, MCC with those of the plan: mean, least"
+    for method, variants in result.items():
+        for variant, plans in variants.items():
+            if not plans:
+                continue
+            yield f"{method}, {variant}"
+            of = list(plans.values())
+            for drawing in of[0]:
+                values = [plan[drawing] for plan in of]
+                yield f"  {drawing:24} {np.mean(values):.3f} {min(values):.3f}"
+            values = [v for plan in of for v in plan.values()]
+            yield f"  {'all':24} {np.mean(values):.3f} {min(values):.3f}"

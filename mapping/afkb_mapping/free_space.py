@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -27,15 +29,22 @@ FURNITURE_M = 2.4
 PARTITION_M = (0.75, 0.35)
 """unless it is at least this long and at most this thick: a piece of wall."""
 
+JAMB_REACH_M = 0.15
+"""What stands this near to where a doorway ends is what it hangs in."""
 
-def free_space(grid: OccupancyGrid) -> Mask:
-    """(rows, cols) cells of rooms: free ones, and those under furniture that stands free."""
+
+def free_space(grid: OccupancyGrid, jambs_xy: Iterable[NDArray[np.float64]] = ()) -> Mask:
+    """(rows, cols) cells of rooms: free ones, and those under furniture that stands free.
+
+    `jambs_xy`: (2, 2) m, map frame, of each doorway that views have shown; what it hangs in is a
+    wall, however short.
+    """
     resolution = grid.resolution_m
     with np.errstate(invalid="ignore"):
         free = grid.probability < FREE_BELOW
         occupied = grid.probability > OCCUPIED_ABOVE
     free = _closed(free, GAP_M, resolution) & ~occupied
-    free = without_furniture(free, resolution)
+    free = without_furniture(free, resolution, _around(jambs_xy, grid))
     return _without_spokes(free, occupied, resolution)
 
 
@@ -52,8 +61,8 @@ def seen_space(grid: OccupancyGrid) -> Mask:
     return largest
 
 
-def without_furniture(free: Mask, resolution: float) -> Mask:
-    """Free space with small islands filled, pieces of wall kept."""
+def without_furniture(free: Mask, resolution: float, walls: Mask | None = None) -> Mask:
+    """Free space with small islands filled; kept are pieces of wall, and what touches `walls`."""
     outside = np.pad(~free, 1, constant_values=True)
     islands, _ = ndimage.label(outside, structure=np.ones((3, 3)))
     islands[islands == islands[0, 0]] = 0
@@ -63,9 +72,25 @@ def without_furniture(free: Mask, resolution: float) -> Mask:
         if window is None:
             continue
         island = islands[window] == label
+        if walls is not None and (island & walls[window]).any():
+            continue
         if _is_furniture(island, resolution):
             filled[window] |= island
     return filled
+
+
+def _around(jambs_xy: Iterable[NDArray[np.float64]], grid: OccupancyGrid) -> Mask:
+    """(rows, cols) cells as near to a jamb as what it hangs in."""
+    near = np.zeros(grid.probability.shape, dtype=bool)
+    size_rc = np.array(grid.probability.shape)
+    for jambs in jambs_xy:
+        cells = np.floor((jambs - grid.origin_xy) / grid.resolution_m).astype(int)[:, ::-1]
+        inside = ((cells >= 0) & (cells < size_rc)).all(axis=1)
+        near[tuple(cells[inside].T)] = True
+    if not near.any():
+        return near
+    around: Mask = _distance(~near, grid.resolution_m) <= JAMB_REACH_M
+    return around
 
 
 def _is_furniture(island: Mask, resolution: float) -> bool:

@@ -1,8 +1,8 @@
-"""Rooms of an occupancy grid: faces between the lines of walls, joined where little parts them.
+"""Rooms of an occupancy grid: free space cut along the lines on which more than openings lies.
 
-Free space without furniture is cut along every line that may bound a room: on which a wall would go
-on if it went on, across narrow places, and in doorways that views have shown. Faces that share more
-opening than wall are one again.
+Lines that may bound a room are those on which a wall would go on if it went on, those across narrow
+places, and doorways that views have shown. Those are cut that walls go on from, with rooms on both
+sides of them, and the mouths of corridors.
 """
 
 from __future__ import annotations
@@ -19,12 +19,15 @@ from afkb_mapping.doorway_merger import SeenDoorway
 from afkb_mapping.doorways import DoorwayShape, connected_rooms, find_doorways
 from afkb_mapping.free_space import Mask, free_space, seen_space
 from afkb_mapping.outlines import outline_of_cells
-from afkb_mapping.segmentation.faces import border_lines, joined_faces
-from afkb_mapping.segmentation.merging import LEAST_ROOM_M2
+from afkb_mapping.segmentation.niches import LEAST_ROOM_M2
 from afkb_mapping.segmentation.open_plan import Belief, Purpose, divided
+from afkb_mapping.segmentation.parts import border_lines, parted
 from afkb_mapping.segmentation.wall_lines import Line
 
 Labels = NDArray[np.int32]
+
+HANGS_IN_WALL = 0.75
+"""What a doorway at least so likely hangs in is a wall, though it looks like furniture."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,10 +60,10 @@ def segment_rooms(grid: OccupancyGrid, doorways: Sequence[SeenDoorway] = ()) -> 
 
     `doorways`: that views have shown, each of which counts as a wall as far as it is likely.
     """
-    free = free_space(grid)
+    free = free_space(grid, [_jambs(d) for d in doorways if d.probability >= HANGS_IN_WALL])
     clearance = _clearance(free, grid.resolution_m)
     lines = border_lines(free, clearance, grid)
-    labels = joined_faces(free, clearance, grid, lines, doorways)
+    labels = parted(free, clearance, grid, lines, doorways)
     if not labels.any():
         labels, lines = seen_space(grid).astype(np.int32), []
         if labels.sum() < LEAST_ROOM_M2 / grid.resolution_m**2:
@@ -87,6 +90,13 @@ def _described(labels: Labels, lines: Sequence[Line], grid: OccupancyGrid) -> Se
     rooms = tuple(_shape(labels, label, clearance, grid) for label in range(1, labels.max() + 1))
     doorways = find_doorways(labels, clearance, grid)
     return Segmentation(labels, rooms, doorways, connected_rooms(labels, clearance), tuple(lines))
+
+
+def _jambs(doorway: SeenDoorway) -> NDArray[np.float64]:
+    """(2, 2) m, map frame: ends of a doorway's width."""
+    half = np.array([-np.sin(doorway.yaw), np.cos(doorway.yaw)]) * doorway.width / 2
+    jambs: NDArray[np.float64] = np.array([doorway.x, doorway.y]) + np.array([half, -half])
+    return jambs
 
 
 def _clearance(free: Mask, resolution: float) -> NDArray[np.float32]:

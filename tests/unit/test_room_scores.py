@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from bench.mapping.floorplans import afkb
+from bench.mapping.room_jitter import drawings, steadiness
 from bench.mapping.room_peers import morphological, voronoi, watershed
 from bench.mapping.room_scores import regions, scores
 
@@ -45,3 +47,29 @@ def test_peers_part_two_rooms_at_a_door(segment):
     true = regions(free)
     free[50:66, 118:122] = True
     assert scores(segment(free, 0.05), true)["mcc"] > 0.95
+
+
+def two_rooms():
+    """4 x 6 m with a wall and a door in it."""
+    free = np.ones((80, 120), bool)
+    free[[0, -1], :], free[:, [0, -1]] = False, False
+    free[:, 58:61], free[32:48, 58:61] = False, True
+    return free
+
+
+def test_drawings_of_a_plan_lie_on_it_when_laid_back():
+    free = two_rooms()
+    for name, drawn, resolution, lay in drawings(free, 0.05):
+        assert drawn.sum() * resolution**2 == pytest.approx(free.sum() * 0.05**2, rel=0.08), name
+        laid = lay(drawn.astype(np.int32)) > 0
+        assert (laid & free).sum() > 0.9 * (laid | free).sum(), name
+
+
+def test_two_rooms_are_steady_and_what_counts_cells_is_not():
+    free = two_rooms()
+    assert min(steadiness(afkb, free, 0.05).values()) > 0.95
+
+    def striped(drawn, resolution_m):
+        return np.where(drawn, 1 + np.indices(drawn.shape)[1] // 30, 0).astype(np.int32)
+
+    assert min(steadiness(striped, free, 0.05).values()) < 0.9

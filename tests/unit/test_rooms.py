@@ -87,7 +87,7 @@ def test_a_wide_opening_parts_rooms_where_views_have_shown_a_doorway():
     seen = SeenDoorway(5.05, 2.55, 0.0, 4.1, 0.9, 4, math.nan)
     grid = OccupancyGrid(two_rooms(door=(0.5, 4.6)), RESOLUTION, (0.0, 0.0))
     assert len(segment_rooms(grid, [seen]).rooms) == 2
-    doubtful = replace(seen, probability=0.1)
+    doubtful = replace(seen, probability=0.02)
     assert len(segment_rooms(grid, [doubtful]).rooms) == 1
 
 
@@ -132,6 +132,38 @@ def test_a_closet_belongs_to_the_room_it_opens_to():
     fill(probability, 1.2, 4.6, 1.3, 5, 0.9)
     _, found = segmented(probability)
     assert len(found.rooms) == 1
+
+
+def test_a_bathroom_behind_a_door_that_was_seen_is_a_room():
+    probability = blank(6, 5)
+    fill(probability, 0, 3.6, 1.2, 3.7, 0.9)
+    fill(probability, 1.2, 3.6, 1.3, 3.9, 0.9)
+    fill(probability, 1.2, 4.6, 1.3, 5, 0.9)
+    door = SeenDoorway(1.25, 4.25, 0.0, 0.7, 0.9, 4, math.nan)
+    found = segment_rooms(OccupancyGrid(probability, RESOLUTION, (0.0, 0.0)), [door])
+    assert [room.area for room in found.rooms] == pytest.approx([26.6, 1.3], abs=0.4)
+
+
+def test_a_counter_that_a_doorway_hangs_in_is_no_furniture():
+    probability = blank(8, 5)
+    fill(probability, 4, 0.1, 4.1, 0.8, 0.9)
+    fill(probability, 4, 1.8, 4.6, 4.0, 0.9)
+    assert len(segmented(probability)[1].rooms) == 1
+    door = SeenDoorway(4.05, 1.3, 0.0, 1.0, 0.9, 4, math.nan)
+    found = segment_rooms(OccupancyGrid(probability, RESOLUTION, (0.0, 0.0)), [door])
+    assert len(found.rooms) == 2
+
+
+def test_a_corridor_is_not_cut_between_doors_that_face_each_other():
+    probability = blank(12, 8)
+    for y in (3.0, 4.4):
+        fill(probability, 0, y, 12, y + 0.1, 0.9)
+        for x in (4.9, 6.05):
+            fill(probability, x, y, x + 1, y + 0.1, 0.1)
+    for low, high in ((0, 3), (4.5, 8)):
+        fill(probability, 5.93, low, 6.02, high, 0.9)
+    _, found = segmented(probability)
+    assert len(found.rooms) == 5
 
 
 def test_a_corridor_is_told_from_the_rooms_along_it():
