@@ -1,6 +1,7 @@
 """What becomes of a map when things go wrong: whether it is said, and the map stays consistent.
 
-    python -m bench.mapping faults [--home HOME] [--other HOME] [--things] [--json]
+    python -m bench.mapping faults [--home HOME] [--other HOME] [--depth-only] [--things] [--json]
+    python -m bench.mapping faults --mishap kidnapped --mishap "odometry jumps 2 m"
 
 Beside the whole recording's map: distance of the views that were used from where they truly were,
 rooms and pieces of wall (a doubled wall is one more), and what run.json says of it. With
@@ -45,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--home", type=Path, default=homes / "merom")
     parser.add_argument("--other", type=Path, default=homes / "pomaria", help="follows as if one")
     parser.add_argument("--things", action="store_true", help="run all detectors")
+    parser.add_argument("--mishap", action="append", metavar="NAME", help="only these; default all")
     parser.add_argument("--depth-only", action="store_true", help="the laser is switched off")
 
 
@@ -63,7 +65,9 @@ def run(args: argparse.Namespace) -> dict[str, dict[str, Any]]:
         "30 % of frames lost": frames_lost,
         "two homes as one": followed_by(other),
     }
-    return {name: _with(mishap, args) for name, mishap in mishaps.items()}
+    if unknown := set(args.mishap or ()) - set(mishaps):
+        raise NoData(f"no mishap {', '.join(sorted(unknown))}; there are: {', '.join(mishaps)}")
+    return {name: _with(mishaps[name], args) for name in args.mishap or mishaps}
 
 
 def _with(mishap: Alter, args: argparse.Namespace) -> dict[str, Any]:

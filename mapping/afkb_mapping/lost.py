@@ -90,11 +90,11 @@ class Lost:
         self, by_laser: bool, pivot_xy: Array, prior: Array, surface_map: SurfaceMap
     ) -> Match | None:
         alike = [look for look in self._looks if look.by_laser == by_laser]
-        if len(alike) < LEAST_VIEWS:
+        if len(alike) < LEAST_VIEWS or (self._count > PATIENCE and self._count % MOST_VIEWS):
             return None
         together = thinned(joined([look.surface for look in alike]))
         match = _near_odometry(together, pivot_xy, prior, surface_map)
-        if match is None and (self._count <= PATIENCE or self._count % MOST_VIEWS == 0):
+        if match is None:
             match = relocated(together, pivot_xy, surface_map)
         if match is None or _is_refuted(match, alike, pivot_xy, surface_map):
             return None

@@ -121,6 +121,8 @@ class ScanRegistration:
     def _match(self, view: View, seen: ViewSurface, T_predicted: Array) -> PlacedPose:
         pivot = T_predicted[:2, 3].copy()
         prior = self._drift + np.diag(np.square(seen.odometry_floor))
+        if self._lost and not seen.by_laser:
+            return self._look_for_place(view, seen, T_predicted, prior)
         surface = seen.surest.near(pivot, RADIUS_M)
         reach = float(np.linalg.norm(surface.points_xy - pivot, axis=1).max()) + NEAR_M
         local_map = LocalMap(self._map.of(seen).near(pivot, reach))
