@@ -18,7 +18,7 @@ from afkb_mapping.box_index import BoxIndex
 
 Array = NDArray[np.float64]
 
-POSE_SIGMA = (0.02, np.deg2rad(1.0))
+POSE_SIGMA = (0.02, math.radians(1.0))
 """Standard deviations, m and rad, by which a view's pose moves and turns all of its segments."""
 UNSTATED_SIGMA_M = 0.02
 """Of the offset of a segment that says nothing of it."""
@@ -55,8 +55,11 @@ class _Wall:
     @property
     def sigmas(self) -> tuple[float, float]:
         """Standard deviations of its line's offset (m) and direction (rad)."""
-        offset, turn = np.sqrt(1 / self.information + np.square(POSE_SIGMA) / self.observations)
-        return float(offset), float(turn)
+        offset, turn = (
+            math.sqrt(1 / known + sigma * sigma / self.observations)
+            for known, sigma in zip(self.information.tolist(), POSE_SIGMA, strict=True)
+        )
+        return offset, turn
 
     def absorb(self, other: _Wall) -> None:
         """Take over another wall's evidence; the line is fitted anew, the ends reach as far."""

@@ -52,8 +52,22 @@ class ViewSurface:
 
 def surface_in_map(view: View, T_map_base: Array) -> ViewSurface:
     """What a view shows, were its level base there (4, 4)."""
-    scan = no_surface()
-    if view.scan is not None and view.T_base_laser is not None:
-        T = T_map_base @ view.T_base_laser
-        scan = surface_of(view.scan).moved(T[:2, :2], T[:2, 3])
-    return ViewSurface(scan, depth_surface_of(view, T_map_base))
+    return ViewSurface(_scan_in_map(view, T_map_base), depth_surface_of(view, T_map_base))
+
+
+def surest_in_map(view: View, T_map_base: Array) -> tuple[SurfacePoints, bool]:
+    """`surest` of what a view shows, and whether that is `by_laser`; the other is not worked out.
+
+    Were its level base there (4, 4).
+    """
+    by_scan = ViewSurface(_scan_in_map(view, T_map_base), no_surface())
+    if by_scan.by_laser:
+        return by_scan.scan, True
+    return depth_surface_of(view, T_map_base), False
+
+
+def _scan_in_map(view: View, T_map_base: Array) -> SurfacePoints:
+    if view.scan is None or view.T_base_laser is None:
+        return no_surface()
+    T = T_map_base @ view.T_base_laser
+    return surface_of(view.scan).moved(T[:2, :2], T[:2, 3])

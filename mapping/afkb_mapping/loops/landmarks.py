@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from afkb.errors import EvidenceError
 from afkb.flow import Detection, View
@@ -66,22 +67,31 @@ class Landmarks:
     def distinct(self) -> NDArray[np.intp]:
         """Indexes of the surest sight of each thing, the surest first."""
         order = np.lexsort((self.top_m, -self.weight, self.sigma_m))
+        first, second = self._pairs_of_one()
+        starts = np.searchsorted(first, np.arange(len(self) + 1))
         left = np.ones(len(self), bool)
         kept = []
         for k in order.tolist():
             if left[k]:
                 kept.append(k)
-                left &= ~self._same_as(k)
+                left[second[starts[k] : starts[k + 1]]] = False
         return np.array(kept, np.intp)
 
-    def _same_as(self, k: int) -> Flags:
-        """(N,) which of them may be other sights of the k-th, itself among them."""
-        narrower = np.minimum(self.size_m[:, 1], self.size_m[k, 1]) / 2
-        reach = np.maximum(narrower, np.minimum(self.sigma_m, self.sigma_m[k]))
-        near = np.hypot(*(self.xy - self.xy[k]).T) <= np.maximum(reach, LEAST_REACH_M)
-        level = np.abs(self.top_m - self.top_m[k]) <= SAME_TOP_M
-        same: Flags = near & level & (self.is_surface == self.is_surface[k])
-        return same
+    def _pairs_of_one(self) -> NDArray[np.intp]:
+        """(2, P) pairs that may be sights of one thing, each in both orders, by the first."""
+        if not len(self):
+            return np.empty((2, 0), np.intp)
+        reach = np.maximum(np.maximum(self.size_m[:, 1] / 2, self.sigma_m), LEAST_REACH_M)
+        farthest = float(reach.max()) * (1 + 1e-9)
+        a, b = cKDTree(self.xy).query_pairs(farthest, output_type="ndarray").T
+        narrower = np.minimum(self.size_m[a, 1], self.size_m[b, 1]) / 2
+        within = np.maximum(narrower, np.minimum(self.sigma_m[a], self.sigma_m[b]))
+        same = np.hypot(*(self.xy[a] - self.xy[b]).T) <= np.maximum(within, LEAST_REACH_M)
+        same &= np.abs(self.top_m[a] - self.top_m[b]) <= SAME_TOP_M
+        same &= self.is_surface[a] == self.is_surface[b]
+        both = np.concatenate([[a[same], b[same]], [b[same], a[same]]], axis=1)
+        found: NDArray[np.intp] = both[:, np.argsort(both[0], kind="stable")]
+        return found
 
 
 def joined(parts: Sequence[Landmarks]) -> Landmarks:

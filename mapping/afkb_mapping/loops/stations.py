@@ -13,7 +13,7 @@ from afkb.flow import Detection, View
 from afkb_mapping.geometry import inverse, planar
 from afkb_mapping.loops.landmarks import Landmarks, Recogniser
 from afkb_mapping.scan_surface import SurfacePoints
-from afkb_mapping.view_surface import surface_in_map
+from afkb_mapping.view_surface import surest_in_map
 
 Array = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def station_of(seen: SeenView, recogniser: Recogniser) -> Station:
     """The station of a placed view."""
     view = seen.view
     assert view.T_map_base is not None
-    seen_there = surface_in_map(view, view.T_map_base)
+    surface, by_laser = surest_in_map(view, view.T_map_base)
     back = inverse(planar(view.T_map_base))
     return Station(
         view.index,
@@ -67,9 +67,9 @@ def station_of(seen: SeenView, recogniser: Recogniser) -> Station:
         planar(view.T_odom_base),
         planar(view.T_map_base),
         view.T_map_base,
-        seen_there.surest.moved(back[:2, :2], back[:2, 3]),
-        seen_there.by_laser,
-        _eye_of(view, seen_there.by_laser),
+        surface.moved(back[:2, :2], back[:2, 3]),
+        by_laser,
+        _eye_of(view, by_laser),
         recogniser.landmarks_of(view, seen.detections),
         not view.has_base and view.scan is None,
     )

@@ -57,7 +57,7 @@ def matched_step(before: Station, after: Station) -> Constraint:
     if not (before.has_laser and after.has_laser):
         return step
     matched = laid_on(after.surface, before.surface, step.T_a_b, STEP_OVERLAP, LASER_SIGMAS)
-    return step if matched is None else fused(step, matched)
+    return step if matched is None else fused(step, matched[0])
 
 
 def laid_on(
@@ -66,8 +66,8 @@ def laid_on(
     T_start: Array,
     least_overlap: float,
     sigmas: tuple[float, float, float],
-) -> Constraint | None:
-    """Where a scan lies on a surface, both in base frames; None where it doesn't.
+) -> tuple[Constraint, float] | None:
+    """Where a scan lies on a surface, both in base frames, and the overlap; None where it doesn't.
 
     `sigmas`: what the match can be off by at least, m, m, rad.
     """
@@ -83,7 +83,8 @@ def laid_on(
     turn = np.eye(3)
     turn[:2, :2] = T[:2, :2]
     information = turn.T @ match.information @ turn + 1e-3 * np.eye(3)
-    return Constraint(T, np.linalg.inv(information) + np.diag(np.square(sigmas)))
+    constraint = Constraint(T, np.linalg.inv(information) + np.diag(np.square(sigmas)))
+    return constraint, match.overlap
 
 
 def fused(first: Constraint, second: Constraint) -> Constraint:

@@ -16,7 +16,6 @@ from afkb_mapping.loops.steps import (
     Constraint,
     laid_on,
 )
-from afkb_mapping.scan_matching import LocalMap, agreement
 from afkb_mapping.scan_surface import SurfacePoints
 from afkb_mapping.seen_through import compared
 
@@ -49,11 +48,11 @@ def verified(
     if len(seen) < LEAST_POINTS or len(onto) < LEAST_POINTS:
         return Verdict(None, "no walls or furniture in sight to verify it by")
     sigmas = LASER_SIGMAS if by_laser else DEPTH_SIGMAS
-    constraint = laid_on(seen, onto, T_start, LEAST_OVERLAP, sigmas)
-    if constraint is None:
+    laid = laid_on(seen, onto, T_start, LEAST_OVERLAP, sigmas)
+    if laid is None:
         return Verdict(None, "walls and furniture do not fit")
+    constraint, overlap = laid
     T = constraint.T_a_b
-    overlap, _ = agreement(seen.moved(T[:2, :2], T[:2, 3]), LocalMap(onto))
     own = station.surface.moved(T[:2, :2], T[:2, 3])
     through = compared(own, onto, transform_xy(T, station.eye_xy[None])[0]).through_share
     if through > MOST_SEEN_THROUGH:
