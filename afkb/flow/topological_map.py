@@ -100,7 +100,8 @@ class Entity:
 class Bound:
     """A straight piece of wall on the floor plane: end points, m; fitted from laser or depth.
 
-    `sigmas`: standard deviations of its line's offset (m) and direction (rad), or None.
+    - `sigmas`: standard deviations of its line's offset (m) and direction (rad), or None.
+    - `existence`: probability that it still stands; `first_seen`, `last_seen`: s, the map's clock.
     """
 
     id: str
@@ -110,11 +111,17 @@ class Bound:
     generated_by: tuple[str, ...]
     room: str | None = None
     sigmas: tuple[float, float] | None = None
+    existence: float = 1.0
+    first_seen: float = 0.0
+    last_seen: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Doorway:
-    """A passage between two rooms: middle of the opening (m), direction across it (rad)."""
+    """A passage between two rooms: middle of the opening (m), direction across it (rad).
+
+    `existence`: probability that it is open now.
+    """
 
     id: str
     x: float
@@ -122,6 +129,7 @@ class Doorway:
     yaw: float
     width: float
     rooms: tuple[str, ...]
+    existence: float = 1.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -125,6 +125,9 @@ def describe_bound(scribe: Scribe, bound: Bound) -> None:
     scribe.say(node, "afn:length", float(np.hypot(*along)))
     scribe.say(node, "afn:yaw", float(np.arctan2(along[1], along[0])))
     scribe.say(node, "afn:observations", int(bound.observations))
+    scribe.probability(node, "afn:existence", bound.existence)
+    scribe.say(node, "afn:firstSeen", float(bound.first_seen))
+    scribe.say(node, "afn:lastSeen", float(bound.last_seen))
     if bound.sigmas is not None:
         offset, turn = bound.sigmas
         scribe.say(node, "afn:offsetSigma", float(offset))
@@ -141,6 +144,7 @@ def describe_doorway(scribe: Scribe, doorway: Doorway) -> None:
     _position(scribe, node, doorway.x, doorway.y, 0.0)
     scribe.say(node, "afn:yaw", float(doorway.yaw))
     scribe.say(node, "afn:width", float(doorway.width))
+    scribe.probability(node, "afn:existence", doorway.existence)
     rooms = [scribe.node(room) for room in doorway.rooms]
     scribe.say(node, "afn:connects", *rooms)
     for room in rooms:

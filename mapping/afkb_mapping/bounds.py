@@ -7,7 +7,7 @@ wall if these allow it, and the better known one counts for more.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ class _Wall:
 
     `mass`: summed lengths over the variances of their offsets, 1/m. `first`: (2,), `second`: (2, 2)
     moments with these weights. `information`: (2,) summed inverse variances of offset (1/m²) and
-    direction (1/rad²).
+    direction (1/rad²). `seen`: first and last, s.
     """
 
     ends: Array
@@ -40,17 +40,27 @@ class _Wall:
     second: Array
     information: Array
     observations: int
-    detectors: set[str] = field(default_factory=set)
+    detectors: set[str]
+    seen: tuple[float, float]
 
     @classmethod
-    def of(cls, segment: Array, sigma_m: float, detector: str) -> _Wall:
+    def of(cls, segment: Array, sigma_m: float, detector: str, stamp: float) -> _Wall:
         length = float(np.linalg.norm(segment[1] - segment[0]))
         middle, half = segment.mean(axis=0), (segment[1] - segment[0]) / 2
         spread = np.outer(middle, middle) + np.outer(half, half) / 3
         mass = length / (sigma_m**2 + POSE_SIGMA[0] ** 2)
         turn_sigma = math.sqrt(12) * sigma_m / length
         information = np.array([sigma_m, turn_sigma]) ** -2
-        return cls(segment.copy(), mass, mass * middle, mass * spread, information, 1, {detector})
+        return cls(
+            segment.copy(),
+            mass,
+            mass * middle,
+            mass * spread,
+            information,
+            1,
+            {detector},
+            (stamp, stamp),
+        )
 
     @property
     def sigmas(self) -> tuple[float, float]:
@@ -69,6 +79,7 @@ class _Wall:
         self.information = self.information + other.information
         self.observations += other.observations
         self.detectors |= other.detectors
+        self.seen = min(self.seen[0], other.seen[0]), max(self.seen[1], other.seen[1])
         middle = self.first / self.mass
         _, axes = np.linalg.eigh(self.second / self.mass - np.outer(middle, middle))
         along = axes[:, 1] * np.sign(axes[:, 1] @ (self.ends[1] - self.ends[0]))
@@ -87,24 +98,28 @@ class BoundMerger:
         self._boxes: BoxIndex[_Wall] = BoxIndex()
         self._changed: list[tuple[Array, Array]] = []
 
-    def add(self, detection: Detection, place: str | None = None) -> None:
-        """Take in one detected bound; `place`, the id of the robot place, is for the caller's log.
+    def add(self, detection: Detection, place: str | None = None, stamp: float = 0.0) -> None:
+        """Take in one bound detected at `stamp`, s; `place`, the robot's, is for the caller's log.
 
         Raises `ValueError` for a detection without a segment.
         """
         if detection.segment_xy is None:
             raise ValueError(f"{detection.detector}: a bound needs segment_xy")
         sigma_m = across_sigma(detection.segment_xy, detection.covariance_xyz)
-        self.add_segment(detection.segment_xy, detection.detector, sigma_m)
+        self.add_segment(detection.segment_xy, detection.detector, sigma_m, stamp)
 
     def add_segment(
-        self, segment_xy: Array, detector: str, sigma_m: float = UNSTATED_SIGMA_M
+        self,
+        segment_xy: Array,
+        detector: str,
+        sigma_m: float = UNSTATED_SIGMA_M,
+        stamp: float = 0.0,
     ) -> None:
         """Take in one segment (2, 2), m, map frame, whose line is known to `sigma_m`."""
         segment = np.asarray(segment_xy, dtype=np.float64)
         if np.linalg.norm(segment[1] - segment[0]) < 1e-6:
             return
-        wall = _Wall.of(segment, sigma_m, detector)
+        wall = _Wall.of(segment, sigma_m, detector, stamp)
         # What the wall grew by may close the gap to the next: hence until nothing fits any more.
         while (index := self._match(wall)) is not None:
             known = self._remove(index)
@@ -185,6 +200,8 @@ class BoundMerger:
                 observations=w.observations,
                 generated_by=tuple(sorted(w.detectors)),
                 sigmas=w.sigmas,
+                first_seen=w.seen[0],
+                last_seen=w.seen[1],
             )
             for number, w in enumerate(walls, start=1)
         ]

@@ -254,4 +254,4 @@ class AffordanceMapper:
         self._doorways.add(view, detections)
         for detection in detections:
             if detection.segment_xy is not None:
-                self._bounds.add(detection, place.id)
+                self._bounds.add(detection, place.id, view.stamp)

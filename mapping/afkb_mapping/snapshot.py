@@ -30,6 +30,7 @@ from afkb_mapping.room_graph import connections, doorways_of
 from afkb_mapping.room_lookup import RoomLookup, room_id
 from afkb_mapping.rooms import Segmentation, divide_by_purpose, segment_rooms
 from afkb_mapping.tracks import ObservedTrack
+from afkb_mapping.visits.bounds_now import bound_now, doorway_now
 from afkb_mapping.way_lengths import way_lengths
 
 STEP_M = 0.05
@@ -76,9 +77,12 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
         for e in entities
     ]
     places = [_robot_place(p, lookup) for p in content.places]
-    bounds = [_bound_in_room(b, lookup) for b in content.bounds]
+    now = max((stamp for stamp, _ in content.trajectory), default=0.0)
+    standing = [bound_now(b, content.grid, now) for b in content.bounds]
+    bounds = [_bound_in_room(b, lookup) for b in standing]
     judge = content.doorways.judge(content.grid)
-    doorways = doorways_of(segmentation, seen_doorways, judge, lookup.room_at)
+    found = doorways_of(segmentation, seen_doorways, judge, lookup.room_at)
+    doorways = tuple(doorway_now(d, content.grid) for d in found)
     seen = {p.id: [i for i in p.seen if i in known] for p in content.places}
     ways = list(way_lengths(content.grid, places, content.ways))
     return TopologicalMap(

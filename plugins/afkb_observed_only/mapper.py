@@ -52,7 +52,7 @@ class ObservedOnlyMapper:
         self._doorways.add(view, detections)
         for detection in detections:
             if detection.segment_xy is not None:
-                self._bounds.add(detection, place.id)
+                self._bounds.add(detection, place.id, view.stamp)
 
     def finish(self, T_map_source: NDArray[np.float64]) -> TopologicalMap:
         """The map of what was added so far."""

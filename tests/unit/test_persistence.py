@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from afkb.flow import NodeKind
+from afkb.flow import Bound, Doorway, NodeKind, OccupancyGrid
 from afkb.inference import network_of
 from afkb.knowledge import AfNet
 from afkb_mapping.mapper import AffordanceMapper
-from afkb_mapping.update_rules import against
+from afkb_mapping.update_rules import CERTAIN, against
+from afkb_mapping.visits.bounds_now import bound_now, doorway_now
 from afkb_mapping.visits.persistence import WEEK_S, aged, hazard_of
 from mapping_samples import container, support, view
 
@@ -106,3 +107,17 @@ def test_what_is_put_where_something_was_taken_away_is_a_new_thing(mapper):
     for i in range(4, 6):
         mapper.add(at(i, 2), [container(2.0, 0.0, bottom=1.1)], [])
     assert observed(mapper)[False].id != first
+
+
+def test_a_wall_goes_by_the_beams_that_pass_there_and_a_doorway_by_those_that_end_in_it():
+    probability = np.full((20, 40), 0.1, np.float32)
+    probability[10, :20] = 0.9
+    grid = OccupancyGrid(probability, 0.05, (0.0, 0.0))
+    wall = Bound("b", (0.02, 0.52), (0.98, 0.52), 3, (), last_seen=10.0)
+    assert bound_now(wall, grid, 10.0).existence == CERTAIN
+    assert bound_now(wall, grid, 10.0 + 52 * WEEK_S).existence == pytest.approx(0.99**52, abs=0.01)
+    torn_down = replace(wall, start_xy=(1.1, 0.52), end_xy=(1.9, 0.52))
+    assert bound_now(torn_down, grid, 10.0).existence == pytest.approx(1 - CERTAIN)
+    gap = Doorway("d", 1.5, 0.52, np.pi / 2, 0.9, ())
+    assert doorway_now(gap, grid).existence == CERTAIN
+    assert doorway_now(replace(gap, x=0.5), grid).existence == pytest.approx(1 - CERTAIN)
