@@ -56,9 +56,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--stride", type=int, default=2, help="ask for every N-th view; the whole takes 20 minutes"
     )
     parser.add_argument(
+        "--senses", nargs="+", choices=SENSES, default=list(SENSES), metavar="SENSE"
+    )
+    parser.add_argument(
         "--more-stride", type=int, default=4, help="every N-th, changed maps and --elsewhere"
     )
-    parser.add_argument("--peer-views", type=int, default=12, help="ask each peer for so many")
+    parser.add_argument(
+        "--peer-views", type=int, default=12, help="ask each peer for so many, or 0"
+    )
     parser.add_argument(
         "--peer-seconds", type=float, default=60.0, help="ask a peer no more after so long"
     )
@@ -80,21 +85,22 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     views, mapped_xy = _views(host, args.asked, args.mapped), _places(args.mapped)
     elsewhere = _views(host, args.elsewhere, args.mapped)
     ask, more = _asking(Localiser(bands)), args.more_stride
+    senses = {name: SENSES[name] for name in args.senses}
     found = {
         name: answers(ask, views, sense, together, args.stride * together)
-        for name, (sense, together) in SENSES.items()
+        for name, (sense, together) in senses.items()
     }
     return {
         "senses": {name: shares(answered) for name, answered in found.items()},
         "peers": _peers(bands, views, args.peer_views, args.peer_seconds),
         "gone": {
             f"{share:.0%}": shares(answers(_asking(_changed(bands, share)), views, depth, 1, more))
-            for share in GONE
+            for share in (GONE if "depth" in senses else ())
         },
-        "near": by_distance(found["depth"], mapped_xy),
+        "near": by_distance(found.get("depth", []), mapped_xy),
         "elsewhere": {
             name: shares(answers(ask, elsewhere, sense, together, more * together))
-            for name, (sense, together) in SENSES.items()
+            for name, (sense, together) in senses.items()
         },
     }
 
@@ -150,7 +156,9 @@ def _peers(
     bands: HeightBands, views: Sequence[View], most: int, seconds: float
 ) -> dict[str, dict[str, Any]]:
     """What each peer answers to some views, evenly picked, in the time it has."""
-    stride = math.ceil(len(views) / max(most, 1))
+    if not most:
+        return {}
+    stride = math.ceil(len(views) / most)
     return {
         name: shares(answers(_asking_peer(peer), views, SENSES[sense][0], 1, stride, seconds))
         for name, sense, peer in peers_in(bands)

@@ -11,13 +11,14 @@ from afkb.errors import MapError
 from afkb.flow import PinholeCamera
 from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_mapping.localisation.bands import FREE, STANDS, UNKNOWN, BandBuilder, HeightBands
-from afkb_mapping.localisation.localiser import Localiser
+from afkb_mapping.localisation.localiser import DEPTH, LASER, Localiser
 from afkb_mapping.localisation.readings import joined, readings_of
-from afkb_mapping.localisation.sensor_model import CLEAR, HIT, LASER_ROW
+from afkb_mapping.localisation.sensor_model import CLEAR, HIT, INDEPENDENT_DEPTH, LASER_ROW, UNSEEN
 from afkb_mapping.localisation.slabs import SLAB_M, SLABS
 from depth_samples import FLOOR, Box, view_of
 
 MAPPED_FROM = [(2, 2, 0), (2.5, 2.5, 1), (5, 2, 0), (7, 2, 2), (7, 4, 0), (3, 3, 2)]
+PER_READING = ("origin", "bearing", "range_m", "row", "kind")
 ASKED_FROM = [(2.3, 1.7, 0.7), (7.3, 2.2, -2.0)]
 
 
@@ -104,6 +105,37 @@ def test_several_views_are_asked_as_one(localiser):
     found = localiser.locate(views)
     assert not found.lost
     assert math.hypot(found.x - last[0], found.y - last[1]) < 0.06
+
+
+def test_odometry_may_err_the_more_the_farther_the_robot_went(localiser):
+    here = readings_of(view_at(ASKED_FROM[0]), np.eye(4))
+    near, far = (here.seen_from(T_from_xy_yaw(m, 0, m)).sigmas for m in (0.1, 2.0))
+    assert (here.sigmas < near).all() and (near < far).all()
+
+
+@pytest.mark.parametrize("odds", [DEPTH, LASER])
+def test_odds_rise_with_the_lead_over_other_poses_and_with_the_fit(odds):
+    assert odds.probability(9.0, -0.2, 0.6) > odds.probability(1.0, -0.2, 0.6)
+    assert odds.probability(4.0, -0.1, 0.6) > odds.probability(4.0, -0.9, 0.6)
+    assert odds.probability(0.0, -1.0, 0.6) < 0.01
+
+
+def test_what_ends_where_nothing_is_known_may_well_be_there():
+    scan = np.full((80, 80), FREE, np.int8)
+    slabs = np.full((80, 80, SLABS), FREE, np.int8)
+    slabs[0, 0, 20] = STANDS
+    unseen = slabs.copy()
+    unseen[:, 50:] = UNKNOWN
+    ahead = readings_of(seen_at(0, 0, 0, [Box((1.5, -9, 0), (1.6, 9, 2.5))]), np.eye(4))
+    middle = np.abs(np.sin(ahead.bearing)) < 0.02
+    some = replace(ahead, **{k: getattr(ahead, k)[middle] for k in PER_READING})
+    pose = np.array([[2.0, 2.0, 0.0]])
+    known, unknown = (
+        Localiser(HeightBands(scan, s, np.zeros(2)))._search.log_likelihood_at(pose, some)[0]
+        for s in (slabs, unseen)
+    )
+    met = int((some.kind == HIT).sum())
+    assert met and known < unknown == pytest.approx(met * INDEPENDENT_DEPTH * math.log(UNSEEN))
 
 
 def test_bands_are_stored_and_read_back(bands):
