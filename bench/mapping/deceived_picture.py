@@ -12,6 +12,8 @@ Array = NDArray[np.float64]
 
 PIXELS_PER_M = 60.0
 MARGIN_M = 0.5
+HEAD = 60
+"""Pixels above the map, for what the colours say."""
 COLOURS = {"metric": "#d02020", "affordance": "#1860c8", "static": "#189048"}
 SAID = {
     "metric": "matched with all alike",
@@ -39,11 +41,13 @@ def picture(match: Match) -> str:
             _dots((match.ends_xy - at) @ R.T + at + (dx, dy), low, high, COLOURS[name], 0.02)
         )
         off = f"{SAID[name]}: {np.hypot(dx, dy):.2f} m and {np.degrees(abs(turn)):.1f}° off"
-        where = f'x="8" y="{18 + 18 * number}" fill="{COLOURS[name]}" style="{STYLE}"'
+        where = f'x="8" y="{18 * number - HEAD + 14}" fill="{COLOURS[name]}" style="{STYLE}"'
         parts.append(f"<text {where}>{off}</text>")
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}">\n'
-        '<rect width="100%" height="100%" fill="white"/>\n' + "\n".join(parts) + "\n</svg>\n"
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 {-HEAD} {width:.0f} {height + HEAD:.0f}">\n'
+        f'<rect y="{-HEAD}" width="100%" height="100%" fill="white"/>\n'
+        + "\n".join(parts)
+        + "\n</svg>\n"
     )
 
 
