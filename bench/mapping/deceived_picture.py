@@ -43,8 +43,9 @@ def picture(match: Match) -> str:
         off = f"{SAID[name]}: {np.hypot(dx, dy):.2f} m and {np.degrees(abs(turn)):.1f}° off"
         where = f'x="8" y="{18 * number - HEAD + 14}" fill="{COLOURS[name]}" style="{STYLE}"'
         parts.append(f"<text {where}>{off}</text>")
+    box = f"0 {-HEAD} {width:.0f} {height + HEAD:.0f}"
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 {-HEAD} {width:.0f} {height + HEAD:.0f}">\n'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}">\n'
         f'<rect y="{-HEAD}" width="100%" height="100%" fill="white"/>\n'
         + "\n".join(parts)
         + "\n</svg>\n"
