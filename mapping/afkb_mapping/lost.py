@@ -13,11 +13,16 @@ from afkb.flow import View
 from afkb_mapping.doubt import contradicts
 from afkb_mapping.held_views import is_another_look
 from afkb_mapping.placing_record import PlacingRecord
-from afkb_mapping.relocation import FOUND_OVERLAP, LEAST_POINTS, relocated
+from afkb_mapping.relocation import (
+    FOUND_OVERLAP,
+    FOUND_OVERLAP_BY_IMAGE,
+    LEAST_POINTS,
+    relocated,
+)
 from afkb_mapping.scan_matching import LocalMap, Match, rotation
 from afkb_mapping.scan_surface import SurfacePoints, joined
 from afkb_mapping.surface_map import SurfaceMap, thinned
-from afkb_mapping.view_matching import best_match
+from afkb_mapping.view_matching import MAX_DEVIATION, best_match, deviation
 from afkb_mapping.view_surface import ViewSurface
 
 Array = NDArray[np.float64]
@@ -95,7 +100,8 @@ class Lost:
         together = thinned(joined([look.surface for look in alike]))
         match = _near_odometry(together, pivot_xy, prior, surface_map)
         if match is None:
-            match = relocated(together, pivot_xy, surface_map)
+            least = FOUND_OVERLAP if by_laser else FOUND_OVERLAP_BY_IMAGE
+            match = relocated(together, pivot_xy, surface_map, least)
         if match is None or _is_refuted(match, alike, pivot_xy, surface_map):
             return None
         return match
@@ -127,4 +133,6 @@ def _near_odometry(
         return None
     local_map = LocalMap(surface_map.near(pivot_xy, NEAR_M))
     match = best_match(seen.near(pivot_xy, NEAR_M), local_map, pivot_xy, prior)
-    return match if match is not None and match.overlap >= FOUND_OVERLAP else None
+    if match is None or match.overlap < FOUND_OVERLAP:
+        return None
+    return match if deviation(match, prior) <= MAX_DEVIATION else None

@@ -31,13 +31,20 @@ LEAST_POINTS = 60
 """What fewer cells of surface look like, much does."""
 FOUND_OVERLAP = 0.7
 """A robot stands where so much of what it sees is on the map,"""
+FOUND_OVERLAP_BY_IMAGE = 0.8
+"""(a camera, which sees only part of what is around, must explain more of it)"""
 FOUND_GAIN = 0.15
 """and so much more of it than anywhere else."""
 STARTING_SIGMAS = (0.2, 0.2, 0.1)
 """How far the search's steps may be off (m, m, rad)."""
 
 
-def relocated(seen: SurfacePoints, pivot_xy: Array, surface_map: SurfaceMap) -> Match | None:
+def relocated(
+    seen: SurfacePoints,
+    pivot_xy: Array,
+    surface_map: SurfaceMap,
+    least_overlap: float = FOUND_OVERLAP,
+) -> Match | None:
     """The motion about the pivot that lays what is seen (thinned) on the map; None where unsure."""
     if len(seen) < LEAST_POINTS or not len(surface_map):
         return None
@@ -48,7 +55,7 @@ def relocated(seen: SurfacePoints, pivot_xy: Array, surface_map: SurfaceMap) -> 
         for start in _starts(seen, pivot_xy, local_map.surface.points_xy)
     ]
     matches.sort(key=lambda m: -m.overlap)
-    if not matches or matches[0].overlap < FOUND_OVERLAP:
+    if not matches or matches[0].overlap < least_overlap:
         return None
     best = matches[0]
     others = [m.overlap for m in matches if _apart(m.motion, best.motion)]
