@@ -36,7 +36,7 @@ def parted(
 ) -> Labels:
     """(rows, cols) label of the room of each free cell, 0 elsewhere; labels are not consecutive.
 
-    A doorway that views have shown counts as a wall as far as it is likely.
+    Where views have shown a likely doorway, a room ends.
     """
     shapes = [DoorwayShape(d.x, d.y, d.yaw, d.width, (1, 2)) for d in doorways]
     seen = lines_across(shapes, grid)
