@@ -104,7 +104,10 @@ class AffordanceMapper:
         if seconds < AGED_EVERY_S:
             return
         tracks = self._association.tracks
-        if seconds >= HOUR_S:  # What was gone already leaves its place to what is put there.
+        if seconds >= HOUR_S:
+            # A visit has ended: of a thing's doubles each would have to be seen to be gone.
+            self._association.merge_doubles()
+            # What was gone already leaves its place to what is put there.
             for track in [t for t in tracks if not t.is_floor and t.existence < GONE_BELOW]:
                 tracks.remove(track)
         age(tracks, seconds, lambda track: hazard_of_track(track, self._network))
