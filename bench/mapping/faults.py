@@ -71,7 +71,7 @@ def run(args: argparse.Namespace) -> dict[str, dict[str, Any]]:
 
 
 def _with(mishap: Alter, args: argparse.Namespace) -> dict[str, Any]:
-    alter: Alter = (lambda f: mishap(without_laser(f))) if args.depth_only else mishap
+    alter: Alter = (lambda f: without_laser(mishap(f))) if args.depth_only else mishap
     host = AlteringHost(alter)
     home = Home(args.home, host)
     detectors = () if args.things else FAST
