@@ -19,7 +19,7 @@ RIGHT_M, RIGHT_RAD = 0.25, math.radians(10)
 NONSENSE = 0.6
 """Share of the beams that are replaced by random ranges."""
 SEED = 1
-NEAR_M = (0.25, 0.5, 1.0, math.inf)
+NEAR_M = (0.05, 0.1, 0.2, 0.5, 1.0, math.inf)
 """Distances to the nearest mapped view, by which answers are grouped."""
 BECAME = ("right", "wrong", "lost")
 

@@ -125,7 +125,7 @@ class Localiser:
 
 
 def _probability(found: Sequence[Candidate], views: Sequence[Readings]) -> float:
-    """Of the best candidate; where a laser has read, its odds are those of all readings."""
+    """Of the best candidate; a camera's odds ask for a better fit than those of a laser alone."""
     readings = joined(views)
     logs = np.array([c.log_likelihood for c in found])
     lead = -float(logsumexp(logs[1:] - logs[0])) if len(logs) > 1 else math.inf
@@ -133,5 +133,5 @@ def _probability(found: Sequence[Candidate], views: Sequence[Readings]) -> float
     by_laser = readings.row == LASER_ROW
     weights = np.where(by_laser, INDEPENDENT_LASER, INDEPENDENT_DEPTH)
     fit = logs[0] / max(float(weights[met].sum()), LEAST_WEIGHT)
-    odds = LASER if by_laser.any() else DEPTH
+    odds = LASER if by_laser.all() else DEPTH
     return odds.probability(min(lead, FARTHEST_LEAD * len(views)), float(fit), float(met.mean()))
