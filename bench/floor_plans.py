@@ -24,10 +24,10 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from afkb.flow import OccupancyGrid
-from afkb_mapping.detour import room_to_room
-from afkb_mapping.doorway_judge import beside_wall, through_wall
-from afkb_mapping.doorway_merger import LIKELY, WIDTH_M
-from afkb_mapping.narrows import gaps_of_map
+from afkb_mapping.doorways.detour import room_to_room
+from afkb_mapping.doorways.judge import beside_wall, through_wall
+from afkb_mapping.doorways.merger import LIKELY, WIDTH_M
+from afkb_mapping.doorways.narrows import gaps_of_map
 from bench.detectors.data import NoData, data_folder
 
 Array = NDArray[np.float64]

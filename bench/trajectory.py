@@ -24,8 +24,8 @@ from afkb.errors import BadFrame
 from afkb.flow import View
 from afkb.plugins.host import PluginHost
 from afkb_mapping.geometry import T_from_xy_yaw, yaw_of
-from afkb_mapping.levelling import level
-from afkb_mapping.registration import ScanRegistration
+from afkb_mapping.placing.levelling import level
+from afkb_mapping.placing.registration import ScanRegistration
 
 SAME_MOMENT_S = 0.005
 """A relation holds for two views if its times are theirs within this."""

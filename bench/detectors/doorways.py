@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from afkb.flow import View
-from afkb_mapping.doorway_merger import DoorwayMerger
-from afkb_mapping.grid_input import insert_view
-from afkb_mapping.occupancy import GridBuilder
+from afkb_mapping.doorways.merger import DoorwayMerger
+from afkb_mapping.grid.input import insert_view
+from afkb_mapping.grid.occupancy import GridBuilder
 from afkb_mapping.structure import PASSAGE
 from bench.calibration.measures import summary
 from bench.detectors.data import Asked, Home

@@ -15,7 +15,7 @@ from afkb.flow import Detection, View
 from afkb.plugins.host import PluginHost
 from afkb.plugins.protocols import Source
 from afkb_mapping.geometry import back_project, transform
-from afkb_mapping.levelling import level
+from afkb_mapping.placing.levelling import level
 from afkb_mapping.run_record import Settings
 from afkb_mapping.selection import Selection
 from bench.detectors.seen import Run, run_detectors

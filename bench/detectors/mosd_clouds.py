@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from afkb.errors import SourceError
 from afkb.flow import PinholeCamera, View
-from afkb_mapping.levelling import level
+from afkb_mapping.placing.levelling import level
 
 TABLE_M = 0.74
 """Height at which a table is put whose floor isn't seen: that of most desks."""

@@ -15,8 +15,8 @@ from afkb.inference import network_of
 from afkb.plugins.host import PluginHost
 from afkb.store import load
 from afkb.store.vocabulary import local_name
+from afkb_mapping.grid.occupancy import GridBuilder
 from afkb_mapping.memory.storing import memory_of
-from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.perception import Perception
 from afkb_mapping.routes.route_map import RouteMap, Thing
 from afkb_mapping.run_record import Stages

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import OccupancyGrid
-from afkb_mapping.rooms import segment_rooms
+from afkb_mapping.rooms.rooms import segment_rooms
 from bench.detectors.data import NoData, data_folder
 from bench.floor_plans import FREE_FROM, RESOLUTION_M, TRUTH, read_plan
 from bench.mapping.room_jitter import steadiness

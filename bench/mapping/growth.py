@@ -28,7 +28,7 @@ from afkb_mapping.localisation.bands import BandBuilder
 from afkb_mapping.mapper import AffordanceMapper
 from afkb_mapping.memory.remembered import RememberedView
 from afkb_mapping.memory.storing import memory_of
-from afkb_mapping.registration import ScanRegistration
+from afkb_mapping.placing.registration import ScanRegistration
 from afkb_mapping.run import make_map
 from afkb_mapping.run_record import Settings
 from bench.detectors.data import NoData

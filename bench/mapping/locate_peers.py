@@ -13,11 +13,11 @@ from scipy.signal import fftconvolve
 
 from afkb.flow import View
 from afkb_mapping.geometry import yaw_of
+from afkb_mapping.grid.occupancy import RESOLUTION_M as CELL_M
 from afkb_mapping.localisation.bands import FREE, STANDS, HeightBands
 from afkb_mapping.localisation.readings import readings_of
 from afkb_mapping.localisation.sensor_model import HIT
 from afkb_mapping.localisation.slabs import SLAB_M
-from afkb_mapping.occupancy import RESOLUTION_M as CELL_M
 from bench.mapping.locate_changes import FLOOR_SLABS
 
 Array = NDArray[np.float64]

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from afkb.errors import BadFrame
 from afkb.flow import View
-from afkb_mapping.levelling import level
-from afkb_mapping.registration import ScanRegistration
+from afkb_mapping.placing.levelling import level
+from afkb_mapping.placing.registration import ScanRegistration
 from afkb_mapping.run import make_map
 from afkb_mapping.run_record import Settings
 from bench.detectors.data import Home, data_folder, homes_in

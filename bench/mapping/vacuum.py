@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import OccupancyGrid
-from afkb_mapping.rooms import segment_rooms
+from afkb_mapping.rooms.rooms import segment_rooms
 from bench.detectors.data import NoData, data_folder
 from bench.mapping.floorplans import HEAD, METHODS, said
 from bench.mapping.room_scores import Labels, Scores, scores

@@ -11,9 +11,9 @@ from afkb.flow import Detection, SkippedFrame, View
 from afkb.inference import Network
 from afkb.plugins.host import PluginHost
 from afkb_mapping.geometry import yaw_of
-from afkb_mapping.levelling import level
 from afkb_mapping.perception import Perception
-from afkb_mapping.placed_views import placed_views, skipped
+from afkb_mapping.placing.levelling import level
+from afkb_mapping.placing.placed_views import placed_views, skipped
 from afkb_mapping.run_record import Stages
 from afkb_mapping.selection import FrameRange, Selection
 from afkb_mapping.structure import is_structure

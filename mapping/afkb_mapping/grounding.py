@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import Hypothesis, NodeKind, Relation, View
 from afkb_mapping.predicted_track import PredictedTrack
-from afkb_mapping.tracks import ObservedTrack
+from afkb_mapping.things.tracks import ObservedTrack
 
 BELOW_MARGIN_M = 0.10
 """A support reaches at least this far beyond what stands on it."""

@@ -10,23 +10,23 @@ from numpy.typing import NDArray
 
 from afkb.flow import Closure, Detection, Hypothesis, Relation, TopologicalMap, View
 from afkb.inference import Network
-from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
-from afkb_mapping.doorway_merger import DoorwayMerger, passage_width
-from afkb_mapping.entities import hazard_of_track, is_kept
-from afkb_mapping.grid_input import insert_view
+from afkb_mapping.doorways.merger import DoorwayMerger, passage_width
+from afkb_mapping.grid.input import insert_view
+from afkb_mapping.grid.occupancy import GridBuilder
 from afkb_mapping.grounding import fits, ground, joined, same_prediction
 from afkb_mapping.ids import Ids
-from afkb_mapping.looks import age, eye_of, look_at, look_for
-from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
 from afkb_mapping.predicted_track import PredictedTrack
 from afkb_mapping.snapshot import MapContent, snapshot
-from afkb_mapping.standing import support_of
-from afkb_mapping.track_index import PredictionIndex
-from afkb_mapping.tracks import ObservedTrack
+from afkb_mapping.things.association import Association
+from afkb_mapping.things.entities import hazard_of_track, is_kept
+from afkb_mapping.things.looks import age, eye_of, look_at, look_for
+from afkb_mapping.things.standing import support_of
+from afkb_mapping.things.track_index import PredictionIndex
+from afkb_mapping.things.tracks import ObservedTrack
+from afkb_mapping.things.visibility import Sight
 from afkb_mapping.update_rules import update_rule
-from afkb_mapping.visibility import Sight
 from afkb_mapping.visits.persistence import AGED_EVERY_S, GONE_BELOW, HOUR_S
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import NodeKind
-from afkb_mapping.viewpoints import Viewpoints
+from afkb_mapping.things.viewpoints import Viewpoints
 
 
 @dataclass(slots=True, eq=False)

@@ -20,7 +20,7 @@ from afkb_mapping.loops.closing import close_loops
 from afkb_mapping.loops.naming import with_loops
 from afkb_mapping.memory.storing import MEMORY_FILE, to_bytes
 from afkb_mapping.memory.visit import Visit
-from afkb_mapping.placed_views import skipped
+from afkb_mapping.placing.placed_views import skipped
 from afkb_mapping.run_record import Settings, Stages, run_record
 from afkb_mapping.selection import Selection
 from afkb_mapping.visits.beginning import Beginning, beginning_of, check_continuing

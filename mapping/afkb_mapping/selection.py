@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from afkb.errors import SourceError
 from afkb.flow import SkippedFrame, View
 from afkb.plugins.protocols import Source
-from afkb_mapping.levelling import SAMPLED_VIEWS, SAMPLED_VIEWS_UPRIGHT
+from afkb_mapping.placing.levelling import SAMPLED_VIEWS, SAMPLED_VIEWS_UPRIGHT
 
 
 @dataclass(frozen=True, slots=True)

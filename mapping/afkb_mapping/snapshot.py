@@ -19,17 +19,17 @@ from afkb.flow import (
     TopologicalMap,
 )
 from afkb.inference import Network
-from afkb_mapping.doorway_merger import DoorwayMerger, SeenDoorway
+from afkb_mapping.doorways.merger import DoorwayMerger, SeenDoorway
 from afkb_mapping.edges import edges_of
-from afkb_mapping.entities import observed_entities, predicted_entities, supports_expected
-from afkb_mapping.occupancy import rasterised
+from afkb_mapping.grid.occupancy import rasterised
 from afkb_mapping.places import Place
 from afkb_mapping.predicted_track import PredictedTrack
-from afkb_mapping.room_evidence import RoomEvidence
-from afkb_mapping.room_graph import connections, doorways_of
-from afkb_mapping.room_lookup import RoomLookup, room_id
-from afkb_mapping.rooms import Segmentation, divide_by_purpose, segment_rooms
-from afkb_mapping.tracks import ObservedTrack
+from afkb_mapping.rooms.evidence import RoomEvidence
+from afkb_mapping.rooms.graph import connections, doorways_of
+from afkb_mapping.rooms.lookup import RoomLookup, room_id
+from afkb_mapping.rooms.rooms import Segmentation, divide_by_purpose, segment_rooms
+from afkb_mapping.things.entities import observed_entities, predicted_entities, supports_expected
+from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.visits.bounds_now import bound_now, doorway_now
 from afkb_mapping.way_lengths import way_lengths
 

@@ -19,7 +19,7 @@ from afkb_containers.settings import ContainerSettings
 from afkb_mapping.bodies import supports_among
 from afkb_mapping.depth_points import intrinsics_of
 from afkb_mapping.from_above import box_around, hull_candidates
-from afkb_mapping.grid_components import AREA, components
+from afkb_mapping.grid.components import AREA, components
 from afkb_mapping.kernels import kernel
 from afkb_mapping.order_statistics import percentile
 from afkb_mapping.sensor_noise import depth_sigma

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.kernels import kernel
-from afkb_mapping.scan_surface import pieces_of
+from afkb_mapping.placing.scan_surface import pieces_of
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -21,7 +21,7 @@ from afkb_grounded.relief_kernel import (
 )
 from afkb_grounded.seen import PART, UPRIGHT, Seen
 from afkb_mapping.depth_points import intrinsics_of
-from afkb_mapping.grid_components import AREA, HEIGHT, LEFT, TOP, WIDTH, components
+from afkb_mapping.grid.components import AREA, HEIGHT, LEFT, TOP, WIDTH, components
 from afkb_mapping.sensor_noise import depth_sigma
 
 FARTHEST_M = 2.5

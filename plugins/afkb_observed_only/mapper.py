@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 from afkb.flow import Detection, Hypothesis, TopologicalMap, View
 from afkb.inference import Network
-from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
-from afkb_mapping.doorway_merger import DoorwayMerger, passage_width
-from afkb_mapping.grid_input import insert_view
+from afkb_mapping.doorways.merger import DoorwayMerger, passage_width
+from afkb_mapping.grid.input import insert_view
+from afkb_mapping.grid.occupancy import GridBuilder
 from afkb_mapping.ids import Ids
-from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
 from afkb_mapping.snapshot import MapContent, snapshot
+from afkb_mapping.things.association import Association
 
 
 class ObservedOnlyMapper:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb_mapping.depth_points import points_of_row
-from afkb_mapping.grid_components import HEIGHT, WIDTH, components
+from afkb_mapping.grid.components import HEIGHT, WIDTH, components
 from afkb_mapping.image_regions import extent, order_by_label
 from afkb_mapping.kernels import kernel
 from afkb_things.cells import cell_size

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from afkb_mapping.bodies import Body, Stand
 from afkb_mapping.depth_points import points_at
 from afkb_mapping.from_above import hull_candidates
-from afkb_mapping.grid_components import AREA, components
+from afkb_mapping.grid.components import AREA, components
 from afkb_mapping.image_regions import order_by_label, pixels_by_label
 from afkb_mapping.kernels import kernel
 from afkb_things.scene import Scene

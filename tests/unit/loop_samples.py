@@ -7,7 +7,7 @@ import numpy as np
 from afkb_mapping.geometry import T_from_xy_yaw, inverse, transform_xy
 from afkb_mapping.loops.landmarks import Landmarks
 from afkb_mapping.loops.stations import Station
-from afkb_mapping.scan_surface import SurfacePoints
+from afkb_mapping.placing.scan_surface import SurfacePoints
 
 KINDS = 6
 SEEN_M = 4.0

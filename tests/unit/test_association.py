@@ -7,8 +7,8 @@ from dataclasses import replace
 from afkb.flow import OrientedBox
 from afkb.inference import network_of
 from afkb.knowledge import AfNet
-from afkb_mapping.association import Association
 from afkb_mapping.ids import Ids
+from afkb_mapping.things.association import Association
 from mapping_samples import container, patch, view
 
 

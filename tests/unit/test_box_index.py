@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from afkb_mapping.association import Association
 from afkb_mapping.bounds import BoundMerger
 from afkb_mapping.box_index import BoxIndex
 from afkb_mapping.ids import Ids
+from afkb_mapping.things.association import Association
 from mapping_samples import container, view
 
 

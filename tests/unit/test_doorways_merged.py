@@ -8,13 +8,13 @@ import pytest
 import laser_samples as laser
 from afkb.flow import OccupancyGrid
 from afkb_doorways.detector import DoorwayDetector
-from afkb_mapping.detour import room_to_room
-from afkb_mapping.doorway_merger import DoorwayMerger, SeenDoorway
-from afkb_mapping.doorways import DoorwayShape
-from afkb_mapping.doorways_united import united
+from afkb_mapping.doorways.detour import room_to_room
+from afkb_mapping.doorways.doorway import DoorwayShape
+from afkb_mapping.doorways.merger import DoorwayMerger, SeenDoorway
+from afkb_mapping.doorways.united import united
 from afkb_mapping.geometry import T_from_xy_yaw
-from afkb_mapping.grid_input import insert_view
-from afkb_mapping.occupancy import GridBuilder
+from afkb_mapping.grid.input import insert_view
+from afkb_mapping.grid.occupancy import GridBuilder
 from afkb_mapping.panorama import Panorama
 from afkb_mapping.upright_cells import UprightCells
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from afkb_mapping.footprint import Footprint
+from afkb_mapping.things.footprint import Footprint
 
 
 def rectangle(width, depth, yaw=0.0, center=(0.0, 0.0), step=0.02):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from afkb_mapping.from_above import box_around, hull_candidates, on_grid
-from afkb_mapping.grid_components import components
+from afkb_mapping.grid.components import components
 from afkb_mapping.image_regions import Region, order_by_label, pixels_by_label
 from afkb_mapping.order_statistics import percentile, percentiles
 

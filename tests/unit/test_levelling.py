@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from afkb.flow import PinholeCamera, View
 from afkb_mapping.geometry import transform
-from afkb_mapping.levelling import level
+from afkb_mapping.placing.levelling import level
 
 CAMERA = PinholeCamera(160, 120, 140.0, 140.0, 79.5, 59.5)
 T_BASE_CAMERA = np.array([[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1.0]])

@@ -9,12 +9,12 @@ import pytest
 import depth_samples as depth
 from afkb.flow import OccupancyGrid, PinholeCamera
 from afkb.knowledge import Trapezoid
-from afkb_mapping.doorway_merger import DoorwayMerger, passage_width
+from afkb_mapping.doorways.merger import DoorwayMerger, passage_width
+from afkb_mapping.doorways.narrows import gaps_of_map
 from afkb_mapping.geometry import T_from_xy_yaw
-from afkb_mapping.grid_input import insert_view
-from afkb_mapping.narrows import gaps_of_map
-from afkb_mapping.occupancy import GridBuilder
-from afkb_mapping.straight_runs import runs_m, thickness_m
+from afkb_mapping.grid.input import insert_view
+from afkb_mapping.grid.occupancy import GridBuilder
+from afkb_mapping.grid.straight_runs import runs_m, thickness_m
 
 SMALL = PinholeCamera(320, 240, 262.5, 262.5, 159.5, 119.5)
 WIDTH = (0.55, 0.7, 1.8, 2.5)

@@ -9,8 +9,8 @@ import laser_samples as samples
 from afkb.errors import BadFrame
 from afkb.flow import OccupancyGrid, PinholeCamera
 from afkb_mapping.geometry import T_from_xy_yaw
-from afkb_mapping.occupancy import GridBuilder, rasterise
-from afkb_mapping.ray_kernel import trace_beams
+from afkb_mapping.grid.occupancy import GridBuilder, rasterise
+from afkb_mapping.grid.rays import trace_beams
 
 
 def at(grid, x, y):
@@ -116,7 +116,7 @@ def test_things_beyond_the_edge_extend_the_grid():
 
 def test_rounding_at_cell_edges_leads_no_beam_out_of_the_window(monkeypatch):
     """The compiled kernel checks no bounds; as plain Python it raises where one is crossed."""
-    monkeypatch.setattr("afkb_mapping.ray_kernel.trace_beams", trace_beams.py_func)
+    monkeypatch.setattr("afkb_mapping.grid.rays.trace_beams", trace_beams.py_func)
     for sensor_y in (-0.3, -0.2, -0.1, 0.1, 0.2):
         angles = -np.pi + 2 * np.pi / 360 * np.arange(360)
         ends = np.column_stack([3 * np.cos(angles), sensor_y + 3 * np.sin(angles)])

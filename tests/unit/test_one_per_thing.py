@@ -6,10 +6,10 @@ import pytest
 
 from afkb.inference import network_of
 from afkb.knowledge import AfNet
-from afkb_mapping.association import Association
 from afkb_mapping.frame_report import described
 from afkb_mapping.ids import Ids
 from afkb_mapping.one_per_thing import one_per_thing
+from afkb_mapping.things.association import Association
 from mapping_samples import container, support, view
 
 

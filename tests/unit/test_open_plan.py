@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from afkb.flow import Doorway, OccupancyGrid
-from afkb_mapping.doorway_judge import DoorwayJudge
-from afkb_mapping.doorways import DoorwayShape
-from afkb_mapping.room_graph import connections, is_doorway
-from afkb_mapping.rooms import divide_by_purpose, segment_rooms
+from afkb_mapping.doorways.doorway import DoorwayShape
+from afkb_mapping.doorways.judge import DoorwayJudge
+from afkb_mapping.rooms.graph import connections, is_doorway
+from afkb_mapping.rooms.rooms import divide_by_purpose, segment_rooms
 from afkb_mapping.segmentation.open_plan import bayes_factor
 from afkb_mapping.upright_cells import UprightCells
 

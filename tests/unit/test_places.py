@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from afkb_mapping.grid.occupancy import GridBuilder
 from afkb_mapping.ids import Ids
-from afkb_mapping.occupancy import GridBuilder
 from afkb_mapping.places import Places
 from mapping_samples import view
 

@@ -3,13 +3,13 @@
 import numpy as np
 
 from afkb.flow import PinholeCamera, View
-from afkb_mapping.frame_gaps import FrameGaps
 from afkb_mapping.geometry import T_from_xy_yaw
-from afkb_mapping.held_views import HELD_LOOKS, MOST_HELD, HeldViews
-from afkb_mapping.placing_record import PlacingRecord
-from afkb_mapping.scan_surface import SurfacePoints, no_surface
-from afkb_mapping.surface_map import SurfaceMap
-from afkb_mapping.view_surface import ViewSurface
+from afkb_mapping.placing.frame_gaps import FrameGaps
+from afkb_mapping.placing.held_views import HELD_LOOKS, MOST_HELD, HeldViews
+from afkb_mapping.placing.record import PlacingRecord
+from afkb_mapping.placing.scan_surface import SurfacePoints, no_surface
+from afkb_mapping.placing.surface_map import SurfaceMap
+from afkb_mapping.placing.view_surface import ViewSurface
 
 NOTHING = ViewSurface(no_surface(), no_surface())
 

@@ -7,7 +7,7 @@ import pytest
 
 from afkb.errors import BadFrame
 from afkb_mapping.geometry import T_from_xy_yaw
-from afkb_mapping.pose_gate import PoseGate
+from afkb_mapping.placing.pose_gate import PoseGate
 from mapping_samples import view
 
 

@@ -12,8 +12,8 @@ import laser_samples as samples
 from afkb.errors import BadFrame
 from afkb.flow import LaserScan, View
 from afkb_mapping.geometry import T_from_xy_yaw, wrap_angle, yaw_of
-from afkb_mapping.placing_record import PlacingRecord
-from afkb_mapping.registration import ScanRegistration
+from afkb_mapping.placing.record import PlacingRecord
+from afkb_mapping.placing.registration import ScanRegistration
 
 PATH = [(1 + 0.3 * i, 2.5, 0.1 * i) for i in range(10)]
 PATH += [(3.7 + 0.4 * i, 3.95, 0.9 - 0.2 * i) for i in range(1, 9)]

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from afkb.flow import OccupancyGrid
-from afkb_mapping.doorway_merger import SeenDoorway
-from afkb_mapping.rooms import segment_rooms
+from afkb_mapping.doorways.merger import SeenDoorway
+from afkb_mapping.rooms.rooms import segment_rooms
 
 RESOLUTION = 0.05
 

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from afkb.errors import MapError
 from afkb.flow import View
 from afkb_mapping.geometry import transform_xy
+from afkb_mapping.grid.occupancy import RESOLUTION_M as CELL_M
+from afkb_mapping.grid.occupancy import GridBuilder
 from afkb_mapping.localisation.slabs import SLABS, SlabBuilder
-from afkb_mapping.occupancy import RESOLUTION_M as CELL_M
-from afkb_mapping.occupancy import GridBuilder
 
 STATE_FILE = "bands.npz"
 """In the map's `state/`: `scan` (rows, cols), `slabs` (rows, cols, SLABS), int8; `origin_xy`."""

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation, distance_transform_edt
 
+from afkb_mapping.grid.occupancy import RESOLUTION_M as CELL_M
 from afkb_mapping.kernels import kernel
 from afkb_mapping.localisation.bands import FREE, STANDS, UNKNOWN, HeightBands
 from afkb_mapping.localisation.rays import CM, FARTHEST_M, ray_in_plane, ray_in_space
 from afkb_mapping.localisation.sensor_model import ELEVATIONS, LASER_ROW, ROWS, STEP_M, STEPS
 from afkb_mapping.localisation.slabs import SLAB_M, SLABS
-from afkb_mapping.occupancy import RESOLUTION_M as CELL_M
 from afkb_mapping.panorama import STEP_OVER_M
 
 PLACE_M = 2 * CELL_M

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from afkb.errors import MapError
 from afkb.flow import SkippedFrame, View
 from afkb.plugins.protocols import Source
-from afkb_mapping.levelling import level
 from afkb_mapping.localisation.bands import STATE_FILE, HeightBands
 from afkb_mapping.localisation.localiser import Localiser, Located
 from afkb_mapping.localisation.readings import Readings, readings_of
+from afkb_mapping.placing.levelling import level
 from afkb_mapping.selection import FrameRange, Selection
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb_mapping.grid.occupancy import RESOLUTION_M as CELL_M
 from afkb_mapping.kernels import kernel
 from afkb_mapping.localisation.sensor_model import STEP_M, STEPS
 from afkb_mapping.localisation.slabs import SLAB_M
-from afkb_mapping.occupancy import RESOLUTION_M as CELL_M
 from afkb_mapping.panorama import STEP_OVER_M
 
 CM = 0.01

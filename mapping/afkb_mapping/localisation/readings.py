@@ -21,8 +21,8 @@ from afkb_mapping.localisation.sensor_model import (
     LASER_ROW,
 )
 from afkb_mapping.localisation.slabs import SLAB_M, SLABS
-from afkb_mapping.odometry import IMAGE_FLOOR, step_covariance
 from afkb_mapping.panorama import NOISE_SIGMAS, STEP_OVER_M
+from afkb_mapping.placing.odometry import IMAGE_FLOOR, step_covariance
 from afkb_mapping.sensor_noise import depth_sigma
 
 Array = NDArray[np.float64]

@@ -7,12 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb_mapping.grid.occupancy import RESOLUTION_M as CELL_M
 from afkb_mapping.kernels import kernel
 from afkb_mapping.localisation.expectation import PLACE_M, TURNS
 from afkb_mapping.localisation.rays import ray_in_plane, ray_in_space
 from afkb_mapping.localisation.sensor_model import LASER_ROW, STEP_M, STEPS
 from afkb_mapping.localisation.slabs import SLAB_M
-from afkb_mapping.occupancy import RESOLUTION_M as CELL_M
 
 Array = NDArray[np.float64]
 

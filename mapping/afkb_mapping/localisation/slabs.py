@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from afkb.errors import BadFrame
 from afkb.flow import View
 from afkb_mapping.depth_points import intrinsics_of
+from afkb_mapping.grid.occupancy import MARGIN_M, MOST_CELLS
+from afkb_mapping.grid.occupancy import RESOLUTION_M as CELL_M
 from afkb_mapping.kernels import kernel
-from afkb_mapping.occupancy import MARGIN_M, MOST_CELLS
-from afkb_mapping.occupancy import RESOLUTION_M as CELL_M
 
 Array = NDArray[np.float64]
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from afkb.flow import Detection, View
 from afkb_mapping.geometry import inverse, planar
 from afkb_mapping.loops.landmarks import Landmarks, Recogniser
-from afkb_mapping.scan_surface import SurfacePoints
-from afkb_mapping.view_surface import surest_in_map
+from afkb_mapping.placing.scan_surface import SurfacePoints
+from afkb_mapping.placing.view_surface import surest_in_map
 
 Array = NDArray[np.float64]
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from afkb_mapping.geometry import T_from_xy_yaw, yaw_of
 from afkb_mapping.loops.stations import Station
-from afkb_mapping.odometry import step_covariance
-from afkb_mapping.scan_matching import LocalMap, refine, rotation
-from afkb_mapping.scan_surface import SurfacePoints
+from afkb_mapping.placing.odometry import step_covariance
+from afkb_mapping.placing.scan_matching import LocalMap, refine, rotation
+from afkb_mapping.placing.scan_surface import SurfacePoints
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from afkb_mapping.loops.landmarks import Landmarks, joined
 from afkb_mapping.loops.stations import Station
-from afkb_mapping.scan_surface import SurfacePoints
-from afkb_mapping.scan_surface import joined as joined_surfaces
+from afkb_mapping.placing.scan_surface import SurfacePoints
+from afkb_mapping.placing.scan_surface import joined as joined_surfaces
 
 Array = NDArray[np.float64]
 

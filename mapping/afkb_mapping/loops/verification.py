@@ -16,8 +16,8 @@ from afkb_mapping.loops.steps import (
     Constraint,
     laid_on,
 )
-from afkb_mapping.scan_surface import SurfacePoints
-from afkb_mapping.seen_through import compared
+from afkb_mapping.placing.scan_surface import SurfacePoints
+from afkb_mapping.placing.seen_through import compared
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from collections import defaultdict
 
 from afkb.flow import View
 from afkb_mapping.geometry import yaw_of
-from afkb_mapping.viewpoints import DISTINCT_BEARING, DISTINCT_STEP_M
+from afkb_mapping.things.viewpoints import DISTINCT_BEARING, DISTINCT_STEP_M
 
 ENOUGH_LOOKS = 16
 """So many looks average a sensor's noise to a quarter. Of further ones each is kept whose number is

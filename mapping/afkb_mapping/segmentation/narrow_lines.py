@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import OccupancyGrid
-from afkb_mapping.doorways import DoorwayShape, find_doorways
+from afkb_mapping.doorways.doorway import DoorwayShape, find_doorways
 from afkb_mapping.segmentation.wall_lines import Line
 
 Clearance = NDArray[np.float32]
@@ -24,7 +24,7 @@ def narrow_lines(clearance: Clearance, grid: OccupancyGrid) -> list[Line]:
 
     `clearance` (rows, cols): distance to the nearest obstacle, m.
     """
-    from afkb_mapping.flood_kernel import flood
+    from afkb_mapping.grid.flood import flood
 
     flat = np.flatnonzero(clearance > 0)
     order = flat[np.argsort(-clearance.ravel()[flat], kind="stable")].astype(np.int64)

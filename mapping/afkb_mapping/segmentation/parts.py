@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from afkb.flow import OccupancyGrid
-from afkb_mapping.doorway_merger import SeenDoorway
-from afkb_mapping.doorways import DoorwayShape
+from afkb_mapping.doorways.doorway import DoorwayShape
+from afkb_mapping.doorways.merger import SeenDoorway
 from afkb_mapping.segmentation.closing import closed_lines
 from afkb_mapping.segmentation.narrow_lines import lines_across, narrow_lines
 from afkb_mapping.segmentation.niches import without_niches

@@ -13,13 +13,13 @@ from afkb.errors import MapError, PluginError, SourceError
 from afkb.flow import SkippedFrame, View
 from afkb.plugins.host import PluginHost
 from afkb_mapping.crew import works_from_memory
-from afkb_mapping.levelling import level
 from afkb_mapping.memory.memory import Memory
 from afkb_mapping.memory.recollection import Recollection
 from afkb_mapping.memory.storing import memory_of
 from afkb_mapping.memory.visit import Visit
-from afkb_mapping.placed_views import placed_views
-from afkb_mapping.placing_record import PlacingRecord
+from afkb_mapping.placing.levelling import level
+from afkb_mapping.placing.placed_views import placed_views
+from afkb_mapping.placing.record import PlacingRecord
 from afkb_mapping.run_record import Settings, Stages
 from afkb_mapping.selection import Selection
 from afkb_mapping.visits.arrival import T_map_source_of_visit

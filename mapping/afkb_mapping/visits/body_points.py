@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from afkb.flow import View
 from afkb_mapping.depth_points import intrinsics_of, points_of_pixels
 from afkb_mapping.memory.remembered import RememberedView
-from afkb_mapping.visibility import (
+from afkb_mapping.things.visibility import (
     MARGIN_M,
     MARGIN_PER_RANGE,
     NEAREST_M,

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import View
-from afkb_mapping.entities import EXISTS_FROM
-from afkb_mapping.looks import LOOKED_AT_SHARE, eye_of
 from afkb_mapping.memory.remembered import RememberedView
-from afkb_mapping.viewpoints import Viewpoints
-from afkb_mapping.visibility import Sight
+from afkb_mapping.things.entities import EXISTS_FROM
+from afkb_mapping.things.looks import LOOKED_AT_SHARE, eye_of
+from afkb_mapping.things.viewpoints import Viewpoints
+from afkb_mapping.things.visibility import Sight
 from afkb_mapping.visits.body_points import look_at_body, may_show, placed
 from afkb_mapping.visits.persistence import aged, hazard_of, met_again, overlooked, seen_through
 from afkb_mapping.visits.things import ComparedThing

@@ -1,0 +1,1 @@
+"""Doorways: what views told of them, and what the grid bears out."""

@@ -1,0 +1,1 @@
+"""The occupancy grid, and what can be read from it."""

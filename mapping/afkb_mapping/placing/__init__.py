@@ -1,0 +1,1 @@
+"""Where each view was taken: odometry, corrected by what the view shows."""

@@ -1,0 +1,1 @@
+"""Things seen, and what is known of each: one node a thing."""
