@@ -8,25 +8,22 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import Closure, Detection, Hypothesis, Relation, TopologicalMap, View
+from afkb.flow import Closure, Detection, Hypothesis, TopologicalMap, View
 from afkb.inference import Network
 from afkb_mapping.bounds import BoundMerger
 from afkb_mapping.doorways.merger import DoorwayMerger, passage_width
 from afkb_mapping.grid.input import insert_view
 from afkb_mapping.grid.occupancy import GridBuilder
-from afkb_mapping.grounding import fits, ground, joined, same_prediction
 from afkb_mapping.ids import Ids
 from afkb_mapping.places import Places
-from afkb_mapping.predicted_track import PredictedTrack
+from afkb_mapping.predictions.expectations import Expectations
+from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.snapshot import MapContent, snapshot
 from afkb_mapping.things.association import Association
 from afkb_mapping.things.entities import hazard_of_track, is_kept
-from afkb_mapping.things.looks import age, eye_of, look_at, look_for
-from afkb_mapping.things.standing import support_of
-from afkb_mapping.things.track_index import PredictionIndex
+from afkb_mapping.things.looks import age, eye_of, look_at
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.things.visibility import Sight
-from afkb_mapping.update_rules import update_rule
 from afkb_mapping.visits.persistence import AGED_EVERY_S, GONE_BELOW, HOUR_S
 
 
@@ -37,18 +34,17 @@ class AffordanceMapper:
 
     def __init__(self, network: Network, rule: str) -> None:
         self._network = network
-        self._rule = update_rule(rule)
-        self._new_id = Ids()
-        self._association = Association(self._new_id, network)
-        self._places = Places(self._new_id)
+        new_id = Ids()
+        self._association = Association(new_id, network)
+        self._places = Places(new_id)
         self._bounds = BoundMerger()
         self._doorways = DoorwayMerger(passage_width(network.knowledge_base))
         self._grid = GridBuilder()
-        self._predictions = PredictionIndex()
+        tracks = self._association.tracks
+        self._expectations = Expectations(rule, new_id, tracks, self._bounds, self._grid)
         self._closures: list[tuple[Closure, NDArray[np.float64]]] = []
         self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
         self._looked_from: list[NDArray[np.float64]] = []
-        self._refuted = 0
         self._aged_at: float | None = None
 
     def add(
@@ -58,10 +54,10 @@ class AffordanceMapper:
         self._enter(view)
         observed = self._association.match(view, detections)  # v_ao
         self._confirm(observed, view)  # v_ao ~ v_ap_m: p = 1, c = c_ao: loop closing
-        expected = self._expect(hypotheses, detections, observed, view)  # v_ap, v_ac
-        self._reinforce(expected, view)  # v_ap ~ v_ap_m: p rises, c = mean
+        expected = self._expectations.expect(hypotheses, detections, observed, view)  # v_ap, v_ac
+        self._expectations.reinforce(expected, view)  # v_ap ~ v_ap_m: p rises, c = mean
         self._look_for_missing(view, observed)
-        self._refute_doubtful(expected)
+        self._expectations.refute_doubtful(expected)
         self._link(view, detections, observed, expected)  # V_r, E_d, E_l
 
     def finish(self, T_map_source: NDArray[np.float64]) -> TopologicalMap:
@@ -70,7 +66,7 @@ class AffordanceMapper:
         content = MapContent(
             network=self._network,
             tracks=list(self._association.tracks),
-            predictions=list(self._predictions),
+            predictions=list(self._expectations),
             places=self._places.places,
             ways=dict(self._places.ways),
             bounds=self._bounds.bounds(),
@@ -83,7 +79,7 @@ class AffordanceMapper:
                 "births": self._association.births,
                 "merges": self._association.merges,
                 "splits": self._association.splits,
-                "refuted": self._refuted,
+                "refuted": self._expectations.refuted,
             },
         )
         return snapshot(content, T_map_source)
@@ -115,9 +111,7 @@ class AffordanceMapper:
     def _confirm(self, observed: Sequence[ObservedTrack | None], view: View) -> None:
         """What is seen for sure gives a prediction its place; what is doubtful confirms nothing."""
         for track in dict.fromkeys(t for t in observed if t is not None and is_kept(t)):
-            extent = track.footprint.extent()
-            near = self._predictions.near(*extent) if extent else []
-            for prediction in [p for p in near if fits(p, track)]:
+            for prediction in self._expectations.fulfilled_by(track):
                 self._close(prediction, track, view)
 
     def _close(self, prediction: PredictedTrack, track: ObservedTrack, view: View) -> None:
@@ -136,7 +130,6 @@ class AffordanceMapper:
         track.predicted_first = track.predicted_first or prediction.kind
         track.predicted_from.update(prediction.anchors)
         track.axioms.update(prediction.axioms)
-        self._predictions.remove(prediction)
 
     def _settled_closures(self) -> list[Closure]:
         """Each with the node that it became, and how far that lies from where it was expected.
@@ -153,91 +146,14 @@ class AffordanceMapper:
             settled.append(replace(closure, entity=track.id, displacement_m=float(off)))
         return settled
 
-    def _expect(
-        self,
-        hypotheses: Sequence[Hypothesis],
-        detections: Sequence[Detection],
-        observed: Sequence[ObservedTrack | None],
-        view: View,
-    ) -> list[PredictedTrack]:
-        """Hypotheses with a place in the map, without those that something seen already fulfils."""
-        expected = []
-        for hypothesis in hypotheses:
-            anchors = [t for i in hypothesis.anchors if (t := observed[i]) is not None]
-            if not anchors:
-                continue
-            if hypothesis.relation is Relation.BELOW and self._all_stand(anchors):
-                continue
-            hidden = not any("support_height" in detections[i].measures for i in hypothesis.anchors)
-            track = ground(hypothesis, anchors, hidden, view, self._grid, self._bounds)
-            if track is not None and not self._fulfilled(track):
-                expected.append(track)
-        return expected
-
-    def _all_stand(self, anchors: Sequence[ObservedTrack]) -> bool:
-        """Whether what carries each anchor has been seen."""
-        tracks = self._association.tracks
-        return all(
-            support_of(anchor, [t for t in tracks.carriers(anchor) if is_kept(t)]) is not None
-            for anchor in anchors
-        )
-
-    def _fulfilled(self, prediction: PredictedTrack) -> bool:
-        near = self._association.tracks.near(*prediction.place())
-        return any(fits(prediction, t) for t in near if is_kept(t))
-
-    def _reinforce(self, expected: list[PredictedTrack], view: View) -> None:
-        """Raise earlier predictions that this viewpoint makes again; add the new ones."""
-        for i, prediction in enumerate(expected):
-            like = self._predictions.like(prediction)
-            old = next((p for p in like if same_prediction(p, prediction)), None)
-            if old is None:
-                prediction.id = self._new_id("predicted")
-                prediction.viewpoints.is_new(eye_of(view), prediction.center_xy)
-                self._predictions.put(prediction)
-                continue
-            if old.viewpoints.is_new(eye_of(view), old.center_xy):
-                old.probability = self._rule(old.probability, prediction.probability)
-                old.observations += 1
-            joined(old, prediction)
-            self._predictions.put(old)
-            expected[i] = old
-
     def _look_for_missing(self, view: View, observed: Sequence[ObservedTrack | None]) -> None:
         """What is seen through counts against; the paper has no such term."""
         seen = {t.id for t in observed if t is not None}
         sight, eye = Sight(view), eye_of(view)
-        in_reach = sight.reach()
-        for track in self._association.tracks.near(*in_reach):
+        for track in self._association.tracks.near(*sight.reach()):
             if track.id not in seen:
                 look_at(track, sight, eye)
-        for prediction in self._predictions.near(*in_reach):
-            look_for(prediction, sight, eye)
-            if prediction.probability < GONE_BELOW:
-                self._refute(prediction)
-
-    def _refute_doubtful(self, expected: Sequence[PredictedTrack]) -> None:
-        """Refute what is too unlikely, or has a wall between it and what it is near to.
-
-        Only news may have changed that: of these `expected` ones, or of walls since the last view.
-        """
-        doubtful = dict.fromkeys(expected)
-        for low, high in self._bounds.changed():
-            doubtful.update(dict.fromkeys(self._predictions.near(low, high)))
-        for prediction in doubtful:
-            if prediction not in self._predictions:
-                continue
-            if prediction.probability < GONE_BELOW or self._is_walled_off(prediction):
-                self._refute(prediction)
-
-    def _refute(self, prediction: PredictedTrack) -> None:
-        self._predictions.remove(prediction)
-        self._refuted += 1
-
-    def _is_walled_off(self, prediction: PredictedTrack) -> bool:
-        """Whether a wall has come to light between a prediction and what it is near to."""
-        near = prediction.near_xy
-        return near is not None and self._bounds.part(near, prediction.center_xy)
+        self._expectations.look_for(sight, eye)
 
     def _link(
         self,

@@ -23,7 +23,7 @@ from afkb_mapping.doorways.merger import DoorwayMerger, SeenDoorway
 from afkb_mapping.edges import edges_of
 from afkb_mapping.grid.occupancy import rasterised
 from afkb_mapping.places import Place
-from afkb_mapping.predicted_track import PredictedTrack
+from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.rooms.evidence import RoomEvidence
 from afkb_mapping.rooms.graph import connections, doorways_of
 from afkb_mapping.rooms.lookup import RoomLookup, room_id

@@ -8,7 +8,7 @@ import numpy as np
 
 from afkb.flow import Entity, NodeKind
 from afkb.inference import Network
-from afkb_mapping.predicted_track import PredictedTrack
+from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.things.footprint import Outline
 from afkb_mapping.things.same_thing import around
 from afkb_mapping.things.standing import FOOT_HIDDEN_M, STANDS_WITHIN_M, support_of

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import View
-from afkb_mapping.predicted_track import PredictedTrack
+from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.things.visibility import Look, Sight
 from afkb_mapping.visits.persistence import HOUR_S, aged, overlooked, seen_through

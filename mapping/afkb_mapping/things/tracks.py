@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from afkb.flow import Detection, NodeKind
 from afkb_mapping.calibration import SCORE
+from afkb_mapping.predictions.update_rules import CERTAIN, log_odds
 from afkb_mapping.things.footprint import Footprint
 from afkb_mapping.things.viewpoints import Viewpoints
-from afkb_mapping.update_rules import CERTAIN, log_odds
 
 SURFACE_CELL_M = 0.04
 THING_CELL_M = 0.01

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Hypothesis, NodeKind, Relation, View
-from afkb_mapping.predicted_track import PredictedTrack
+from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.things.tracks import ObservedTrack
 
 BELOW_MARGIN_M = 0.10
