@@ -154,13 +154,14 @@ def test_a_counter_that_a_doorway_hangs_in_is_no_furniture():
     assert len(found.rooms) == 2
 
 
-def test_a_corridor_is_not_cut_between_doors_that_face_each_other():
+@pytest.mark.parametrize("width", [1.2, 1.6, 2.0])
+def test_a_corridor_is_not_cut_between_doors_that_face_each_other(width):
     probability = blank(12, 8)
-    for y in (3.0, 5.1):
+    for y in (3.0, 3.1 + width):
         fill(probability, 0, y, 12, y + 0.1, 0.9)
         for x in (5.0, 6.05):
             fill(probability, x, y, x + 0.9, y + 0.1, 0.1)
-    for low, high in ((0, 3), (5.2, 8)):
+    for low, high in ((0, 3), (3.2 + width, 8)):
         fill(probability, 5.93, low, 6.02, high, 0.9)
     _, found = segmented(probability)
     assert len(found.rooms) == 5

@@ -35,6 +35,12 @@ class Passage:
     along: Array
 
     @property
+    def middle(self) -> Array:
+        """(2,) column and row."""
+        middle: Array = (self.start + self.end) / 2
+        return middle
+
+    @property
     def normal(self) -> Array:
         """(2,) unit vector to one of its sides."""
         return np.array([-self.along[1], self.along[0]])
@@ -59,18 +65,25 @@ def width_m(passage: Passage, resolution_m: float) -> float:
     return (float(np.linalg.norm(passage.end - passage.start)) + 1) * resolution_m
 
 
-def flanks_m(passage: Passage, free: Mask, resolution_m: float) -> float:
+def flanks_m(passage: Passage, free: Mask, behind: Mask, resolution_m: float) -> float:
     """Length of the walls in line with a passage that have free space along both faces, m.
 
     Both ends together. A room's door has such walls; the mouth of a corridor has none, as the
-    corridor is no wider than its mouth.
+    corridor is no wider than its mouth. `behind`: the free cells without those that doors in other
+    walls lead to. One face may be looked for behind such doors, but not both.
     """
     beside = np.arange(BESIDE_M[0], BESIDE_M[1] + BESIDE_STEP_M / 2, BESIDE_STEP_M) / resolution_m
     total = 0.0
     for jamb, outward in ((passage.start, -passage.along), (passage.end, passage.along)):
         inner = jamb - outward
-        sides = (passage.normal, -passage.normal)
-        total += min(_free_run(inner, outward, side, beside, free, resolution_m) for side in sides)
+        through, around = (
+            [
+                _free_run(inner, outward, side, beside, cells, resolution_m)
+                for side in (passage.normal, -passage.normal)
+            ]
+            for cells in (free, behind)
+        )
+        total += min(*through, max(around))
     return total * resolution_m
 
 
@@ -79,11 +92,10 @@ def widest_m(passage: Passage, free: Mask, clearance: Clearance, resolution_m: f
 
     `clearance` (rows, cols): distance to the nearest obstacle, m.
     """
-    middle = (passage.start + passage.end) / 2
     ahead = np.arange(AHEAD_M / resolution_m)[:, None]
     widths = []
     for side in (passage.normal, -passage.normal):
-        points = middle + ahead * side
+        points = passage.middle + ahead * side
         reached = int(np.logical_and.accumulate(_marked(free, points)).sum())
         cols, rows = _cells(points[:reached]).T
         widths.append(2 * float(clearance[rows, cols].max(initial=0.0)))
