@@ -6,22 +6,21 @@ only; drift that is left after a long way round is for loop closing to mend (pap
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from afkb.errors import BadFrame
 from afkb.flow import View
-from afkb_mapping.geometry import T_from_xy_yaw, inverse
+from afkb_mapping.geometry import inverse
 from afkb_mapping.placing.doubt import contradicts, is_confirmed, is_doubtful
 from afkb_mapping.placing.held_views import HeldViews
 from afkb_mapping.placing.lost import WHY, Lost
 from afkb_mapping.placing.map_so_far import MapSoFar
 from afkb_mapping.placing.odometry import step_covariance
+from afkb_mapping.placing.placed_pose import PlacedPose, about
 from afkb_mapping.placing.probation import Probation
 from afkb_mapping.placing.record import PlacingRecord
-from afkb_mapping.placing.scan_matching import LocalMap, Match, agreement, rotation
+from afkb_mapping.placing.scan_matching import LocalMap, Match, agreement
 from afkb_mapping.placing.scan_surface import SurfacePoints
 from afkb_mapping.placing.seen_through import compared
 from afkb_mapping.placing.view_matching import GOOD_OVERLAP, MAX_DEVIATION, best_match, deviation
@@ -43,21 +42,6 @@ few views, one by itself often does after some drift. A scan, which sees all rou
 CONTRADICTED = "it looks through what is mapped where odometry has it"
 RADIUS_M = 15.0
 """Map within this distance of the robot takes part in a match, whatever the sensor's range."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PlacedPose:
-    """Where a view was taken.
-
-    - `T_map_base`: 4x4, base in the map frame. `covariance`: (3, 3) of x, y (m), yaw (rad).
-    - `matched`: what it sees fixed it; else it is odometry's. `overlap`: fraction of the view's
-      surface that lies on the map's.
-    """
-
-    T_map_base: Array
-    covariance: Array
-    matched: bool
-    overlap: float
 
 
 class ScanRegistration:
@@ -167,7 +151,7 @@ class ScanRegistration:
     ) -> tuple[ViewSurface, PlacedPose]:
         """What is seen, and from where, where it matches; so is odometry from now on."""
         self._drift = np.zeros((3, 3))
-        T_correction = _about(T_predicted[:2, 3], match.motion)
+        T_correction = about(T_predicted[:2, 3], match.motion)
         self._T_map_odom = T_correction @ self._T_map_odom
         moved = seen.moved(T_correction[:2, :2], T_correction[:2, 3])
         T_map_base = T_correction @ T_predicted
@@ -244,10 +228,3 @@ class ScanRegistration:
         else:
             self._map.keep_waiting(view)
         return PlacedPose(T_predicted, self._covariance + self._drift, False, overlap)
-
-
-def _about(pivot: Array, motion: Array) -> Array:
-    """4x4 planar transform that turns about the pivot by motion[2] and shifts by motion[:2]."""
-    T = T_from_xy_yaw(0.0, 0.0, float(motion[2]))
-    T[:2, 3] = pivot + motion[:2] - rotation(float(motion[2])) @ pivot
-    return T
