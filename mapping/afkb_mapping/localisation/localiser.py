@@ -60,9 +60,8 @@ FARTHEST_LEAD = 15.0
 """A view's. More tells no more: what is left to err is that the place is not in the map."""
 LEAST_WEIGHT = 5.0
 """Fewer independent readings than these tell nothing of how well a pose fits."""
-SURE = 0.6
-"""Below this probability the robot is lost: the least at which none of the depth views to which the
-odds were fitted was placed wrongly (275, of which 123 of another home)."""
+SURE = 0.5
+"""Below this probability the robot is lost: what is told is more likely right than wrong."""
 STEP_M, STEP_RAD = 0.05, math.radians(2.0)
 LEAST_SIGMAS = (0.02, 0.02, math.radians(0.5))
 """No pose is known better than the map's cells allow."""
