@@ -150,7 +150,7 @@ class AffordanceMapper:
         """What is seen through counts against; the paper has no such term."""
         seen = {t.id for t in observed if t is not None}
         sight, eye = Sight(view), eye_of(view)
-        for track in self._association.tracks.near(*sight.reach()):
+        for track in self._association.tracks.near(*sight.reach):
             if track.id not in seen:
                 look_at(track, sight, eye)
         self._expectations.look_for(sight, eye)

@@ -27,7 +27,6 @@ class HeldView:
     """A placed view that may have to be taken back: what it showed, as it was placed."""
 
     index: int
-    T_odom_base: Array
     seen: ViewSurface
     is_another_look: bool
 
@@ -52,7 +51,7 @@ class HeldViews:
         is_new = self._T_last_look is None or is_another_look(self._T_last_look, view.T_odom_base)
         if is_new:
             self._T_last_look = view.T_odom_base
-        self._views.append(HeldView(view.index, view.T_odom_base, seen, is_new))
+        self._views.append(HeldView(view.index, seen, is_new))
         while sum(v.is_another_look for v in self._views) > HELD_LOOKS or self._are_too_many:
             del self._views[0]
             self.settled += 1

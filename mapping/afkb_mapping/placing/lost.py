@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from afkb.errors import BadFrame
 from afkb.flow import View
-from afkb_mapping.placing.doubt import contradicts
 from afkb_mapping.placing.held_views import is_another_look
 from afkb_mapping.placing.record import PlacingRecord
 from afkb_mapping.placing.relocation import (
@@ -21,6 +20,7 @@ from afkb_mapping.placing.relocation import (
 )
 from afkb_mapping.placing.scan_matching import LocalMap, Match, rotation
 from afkb_mapping.placing.scan_surface import SurfacePoints, joined
+from afkb_mapping.placing.seen_through import compared
 from afkb_mapping.placing.surface_map import SurfaceMap, thinned
 from afkb_mapping.placing.view_matching import MAX_DEVIATION, best_match, deviation
 from afkb_mapping.placing.view_surface import ViewSurface
@@ -120,7 +120,7 @@ def _is_refuted(
         from_xy = pivot_xy + match.motion[:2] + R @ (look.from_xy - pivot_xy)
         placed = look.surface.moved(R, pivot_xy + match.motion[:2] - R @ pivot_xy)
         local_map = LocalMap(surface_map.near(from_xy, NEAR_M))
-        if contradicts(None, placed, local_map, from_xy):
+        if compared(placed, local_map.surface, from_xy).disagrees:
             return True
     return False
 

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from afkb.errors import BadFrame
 from afkb.flow import View
 from afkb_mapping.geometry import inverse
-from afkb_mapping.placing.doubt import contradicts, is_confirmed, is_doubtful
 from afkb_mapping.placing.held_views import HeldViews
 from afkb_mapping.placing.lost import WHY, Lost
 from afkb_mapping.placing.map_so_far import MapSoFar
@@ -20,9 +19,9 @@ from afkb_mapping.placing.odometry import step_covariance
 from afkb_mapping.placing.placed_pose import PlacedPose, about
 from afkb_mapping.placing.probation import Probation
 from afkb_mapping.placing.record import PlacingRecord
-from afkb_mapping.placing.scan_matching import LocalMap, Match, agreement
+from afkb_mapping.placing.scan_matching import LocalMap, Match, agreement, apply_motion
 from afkb_mapping.placing.scan_surface import SurfacePoints
-from afkb_mapping.placing.seen_through import compared
+from afkb_mapping.placing.seen_through import NOT_COMPARED, Comparison, compared
 from afkb_mapping.placing.view_matching import GOOD_OVERLAP, MAX_DEVIATION, best_match, deviation
 from afkb_mapping.placing.view_surface import ViewSurface, surface_in_map
 
@@ -114,12 +113,13 @@ class ScanRegistration:
         fits = match is not None and match.overlap >= GOOD_OVERLAP
         if (self._lost or self._probation) and fits and seen.by_laser:
             self._be_found(view, 0.0, 0.0)  # it sees all round: hardly by chance
-        contradicted = not fits and contradicts(match, surface, local_map, pivot)
+        asked = not fits or self._probation
+        beside = _beside_map(match, surface, local_map, pivot) if asked else NOT_COMPARED
+        contradicted = not fits and (beside.disagrees if match is None else beside.contradicts)
         self._contradicted = self._contradicted + 1 if contradicted else 0
         if self._probation:
             if fits and match is not None and deviation(match, prior) < MAX_DEVIATION:
-                confirmed = is_confirmed(match, surface, local_map, pivot)
-                return self._go_on_probation(view, seen, match, T_predicted, confirmed)
+                return self._go_on_probation(view, seen, match, T_predicted, beside.confirms)
             self._doubt(view, contradicted)
         if self._lost or self._contradicted >= (1 if seen.by_laser else IMAGES_IN_A_ROW):
             return self._look_for_place(view, seen, T_predicted, prior)
@@ -128,7 +128,7 @@ class ScanRegistration:
         if match is None:
             return self._go_on_by_odometry(view, seen, surface, local_map, T_predicted)
         self._covariance = inverse(match.information + inverse(prior))
-        doubtful = seen.by_laser and not fits and is_doubtful(match, surface, local_map, pivot)
+        doubtful = seen.by_laser and not fits and beside.is_doubtful
         return self._settle(view, seen, match, T_predicted, doubtful)
 
     def _settle(
@@ -228,3 +228,13 @@ class ScanRegistration:
         else:
             self._map.keep_waiting(view)
         return PlacedPose(T_predicted, self._covariance + self._drift, False, overlap)
+
+
+def _beside_map(
+    match: Match | None, seen: SurfacePoints, local_map: LocalMap, pivot_xy: Array
+) -> Comparison:
+    """The view beside the map, where it matches best; where odometry has it if it matches not."""
+    if match is None:
+        return compared(seen, local_map.surface, pivot_xy)
+    placed = apply_motion(match.motion, pivot_xy, seen)
+    return compared(placed, local_map.surface, pivot_xy + match.motion[:2])

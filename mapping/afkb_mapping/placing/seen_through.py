@@ -28,6 +28,11 @@ LEAST_THROUGH = 0.1
 """
 
 
+SURELY_AGREEING = 0.7
+"""A scan that the map explains little of, and that shows what the map does in fewer of the
+directions in which both show a surface, may have slid along a wall: it would double others."""
+
+
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """In how many directions both a view and the map show a surface, and how they compare there.
@@ -55,9 +60,22 @@ class Comparison:
         return self.compared >= LEAST_COMPARED and self.agreeing < LEAST_AGREEING
 
     @property
+    def confirms(self) -> bool:
+        """Whether the view shows enough of the map, and as the map has it."""
+        return self.compared >= LEAST_COMPARED and self.agreeing >= SURELY_AGREEING
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether a good part of what is seen lies beside what the map has."""
+        return self.compared >= LEAST_COMPARED and self.agreeing < SURELY_AGREEING
+
+    @property
     def contradicts(self) -> bool:
         """Whether the view was taken elsewhere: new things alone don't explain what it sees."""
         return self.disagrees and self.through_share > LEAST_THROUGH
+
+
+NOT_COMPARED = Comparison(0, 0, 0)
 
 
 def compared(seen: SurfacePoints, mapped: SurfacePoints, sensor_xy: Array) -> Comparison:

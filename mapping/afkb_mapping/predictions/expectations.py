@@ -104,7 +104,7 @@ class Expectations:
 
     def look_for(self, sight: Sight, eye: NDArray[np.float64]) -> None:
         """What is seen through, where a prediction says that something is, counts against it."""
-        for prediction in self._index.near(*sight.reach()):
+        for prediction in self._index.near(*sight.reach):
             look_for(prediction, sight, eye)
             if prediction.probability < GONE_BELOW:
                 self._refute(prediction)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +42,7 @@ class Sight:
             self._intrinsics = intrinsics_of(view)
             self._T_camera_map = np.asarray(np.linalg.inv(view.T_map_camera), np.float64)
 
+    @cached_property
     def reach(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Corners (2,) of a box, map frame, m, outside of which the view looks at nothing."""
         if self._depth_m is None:
