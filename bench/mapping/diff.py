@@ -17,14 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.plugins.host import PluginHost
-from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_mapping.run import make_map
 from afkb_mapping.run_record import Settings
 from afkb_mapping.visits.diff import diff
 from bench.detectors.data import NoData, data_folder
 from bench.homes import WELL_SEEN_PIXELS
-
-Truth = Mapping[str, Any]
+from bench.mapping.true_views import T_map_world, Truth, truth_of
 
 BESIDE_M = 0.08
 """A node is of the smallest thing in whose box its middle lies, seen from above or this near,"""
@@ -85,12 +83,11 @@ class _Visit:
 
     @property
     def truth(self) -> Truth:
-        return dict(json.loads((self.home / "truth.json").read_text()))
+        return truth_of(self.home)
 
     @property
     def T_map_world(self) -> NDArray[np.float64]:
-        first = self.truth["views"][0]
-        return np.linalg.inv(T_from_xy_yaw(first["x"], first["y"], first["yaw"]))
+        return T_map_world(self.truth)
 
     def things(self) -> dict[str, Truth]:
         return {t["name"]: t for t in self.truth["things"]}

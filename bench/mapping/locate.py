@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +14,13 @@ from numpy.typing import NDArray
 
 from afkb.flow import View
 from afkb.plugins.host import PluginHost
-from afkb_mapping.geometry import T_from_xy_yaw
+from afkb_mapping.geometry import transform_xy
 from afkb_mapping.localisation.bands import STATE_FILE, HeightBands
 from afkb_mapping.localisation.localiser import Localiser
 from afkb_mapping.localisation.questions import asked
 from afkb_mapping.run import make_map
 from afkb_mapping.run_record import Settings
 from bench.detectors.data import NoData, data_folder
-from bench.detectors.seen import placed_views
 from bench.mapping.locate_answers import (
     HEADER,
     SEED,
@@ -38,6 +35,7 @@ from bench.mapping.locate_answers import (
 )
 from bench.mapping.locate_changes import without
 from bench.mapping.locate_peers import Peer, peers_in
+from bench.mapping.true_views import T_map_world, Truth, true_views, truth_of
 
 GONE = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Shares of the low things that are taken out of the map."""
@@ -82,8 +80,9 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as scratch:
         folder = args.map or _mapped(host, args.mapped, Path(scratch) / "map")
         bands = HeightBands.from_bytes((folder / "state" / STATE_FILE).read_bytes())
-    views, mapped_xy = _views(host, args.asked, args.mapped), _places(args.mapped)
-    elsewhere = _views(host, args.elsewhere, args.mapped)
+    mapped = truth_of(args.mapped)
+    views, mapped_xy = true_views(host, args.asked, mapped), _places(mapped)
+    elsewhere = true_views(host, args.elsewhere, mapped)
     ask, more = _asking(Localiser(bands)), args.more_stride
     senses = {name: SENSES[name] for name in args.senses}
     found = {
@@ -111,25 +110,10 @@ def _mapped(host: PluginHost, home: Path, out: Path) -> Path:
     return out
 
 
-def _T_map_world(mapped: Path) -> Array:
-    first = json.loads((mapped / "truth.json").read_text())["views"][0]
-    T: Array = np.asarray(np.linalg.inv(T_from_xy_yaw(first["x"], first["y"], first["yaw"])))
-    return T
-
-
-def _places(mapped: Path) -> Array:
+def _places(mapped: Truth) -> Array:
     """(N, 2) m, map frame: where its views were taken."""
-    seen = json.loads((mapped / "truth.json").read_text())["views"]
-    xy: Array = np.array([[v["x"], v["y"], 0.0, 1.0] for v in seen]) @ _T_map_world(mapped).T
-    return xy[:, :2]
-
-
-def _views(host: PluginHost, home: Path, mapped: Path) -> list[View]:
-    """Views of a home, placed where they were taken, in the frame of the map."""
-    truth = json.loads((home / "truth.json").read_text())
-    T = _T_map_world(mapped)
-    placed = placed_views(host.open_source(str(home / "bag")).views(), truth)
-    return [replace(v, T_map_base=T @ v.T_map_base) for v in placed if v.T_map_base is not None]
+    xy: Array = np.array([[v["x"], v["y"]] for v in mapped["views"]])
+    return transform_xy(T_map_world(mapped), xy)
 
 
 def _changed(bands: HeightBands, share: float) -> Localiser:

@@ -12,23 +12,17 @@ the simulated home, the later one rearranged.
 from __future__ import annotations
 
 import argparse
-import json
 import tempfile
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from afkb.plugins.host import PluginHost
 from afkb_mapping.demo_table import transient_per_place
-from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_mapping.run import make_map
 from afkb_mapping.run_record import Settings
 from afkb_simulation.reading import world_path
 from afkb_simulation.truth import load_truth
-from bench.detectors.seen import placed_views
 from bench.mapping.deceived_picture import picture
 from bench.mapping.deceived_visits import (
     DEPTH,
@@ -41,6 +35,7 @@ from bench.mapping.deceived_visits import (
     summary,
 )
 from bench.mapping.rearranged import rearranged
+from bench.mapping.true_views import true_views, truth_of
 from bench.paper_home import compare
 
 WORLD = "world:paper_home"
@@ -74,18 +69,7 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
 def _homes(host: PluginHost, args: argparse.Namespace, scratch: Path) -> Visits:
     folder = scratch / "first"
     make_map(host, Settings(uri=str(args.first / "bag"), out=folder))
-    first = json.loads((args.first / "truth.json").read_text())["views"][0]
-    T_map_world = np.linalg.inv(T_from_xy_yaw(first["x"], first["y"], first["yaw"]))
-    truth = json.loads((args.later / "truth.json").read_text())
-    views = host.open_source(str(args.later / "bag")).views(stride=args.stride)
-    return Visits(
-        folder,
-        [
-            replace(v, T_map_base=T_map_world @ v.T_map_base)
-            for v in placed_views(views, truth)
-            if v.T_map_base is not None
-        ],
-    )
+    return Visits(folder, true_views(host, args.later, truth_of(args.first), args.stride))
 
 
 def _worlds(host: PluginHost, folder: Path, stride: int, scratch: Path) -> Visits:
