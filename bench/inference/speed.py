@@ -1,6 +1,6 @@
 """What inference takes: posteriors of a thing and of a room, and the predictions of a full view.
 
-    python -m bench.inference_speed [--json]
+    python -m bench.inference speed [--json]
 
 CPU milliseconds, median and 95th percentile, of calls after the first ones.
 """
@@ -8,10 +8,9 @@ CPU milliseconds, median and 95th percentile, of calls after the first ones.
 from __future__ import annotations
 
 import argparse
-import json
-import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -55,19 +54,16 @@ def measured(host: PluginHost) -> dict[str, dict[str, float]]:
     return found
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--json", action="store_true")
-    result = measured(PluginHost())
-    if parser.parse_args().json:
-        json.dump(result, sys.stdout, indent=1)
-        return 0
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """It takes no data."""
+
+
+def run(args: argparse.Namespace) -> dict[str, dict[str, float]]:
+    """Milliseconds by what is asked."""
+    return measured(PluginHost())
+
+
+def table(result: dict[str, Any]) -> Iterator[str]:
+    """A line per question."""
     for what, ms in result.items():
-        sys.stdout.write(f"{what:28} median {ms['median']:.2f} ms, 95 % {ms['p95']:.2f} ms\n")
-    return 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+        yield f"{what:28} median {ms['median']:.2f} ms, 95 % {ms['p95']:.2f} ms"
