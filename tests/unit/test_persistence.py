@@ -8,9 +8,9 @@ import pytest
 
 from afkb.flow import Bound, Doorway, NodeKind, OccupancyGrid
 from afkb.inference import network_of
+from afkb.inference.update_rules import CERTAIN, against
 from afkb.knowledge import AfNet
 from afkb_mapping.mapper import AffordanceMapper
-from afkb_mapping.predictions.update_rules import CERTAIN, against
 from afkb_mapping.visits.bounds_now import bound_now, doorway_now
 from afkb_mapping.visits.persistence import WEEK_S, aged, hazard_of
 from mapping_samples import container, support, view

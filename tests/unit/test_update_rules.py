@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from afkb.errors import PluginError
-from afkb_mapping.predictions.update_rules import CERTAIN, RULES, against, literal, update_rule
+from afkb.inference.update_rules import CERTAIN, RULES, against, literal, update_rule
 
 probability = st.floats(0.01, 0.99)
 

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, Hypothesis, Relation, View
+from afkb.inference.update_rules import update_rule
 from afkb_mapping.bounds import BoundMerger
 from afkb_mapping.grid.occupancy import GridBuilder
 from afkb_mapping.ids import Ids
 from afkb_mapping.predictions.grounding import fits, ground, joined, same_prediction
 from afkb_mapping.predictions.index import PredictionIndex
 from afkb_mapping.predictions.predicted_track import PredictedTrack
-from afkb_mapping.predictions.update_rules import update_rule
 from afkb_mapping.things.entities import is_kept
 from afkb_mapping.things.looks import eye_of, look_for
 from afkb_mapping.things.standing import support_of

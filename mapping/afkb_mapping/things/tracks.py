@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Detection, NodeKind
+from afkb.inference.update_rules import CERTAIN, log_odds
 from afkb_mapping.calibration import SCORE
-from afkb_mapping.predictions.update_rules import CERTAIN, log_odds
 from afkb_mapping.things.footprint import Footprint
 from afkb_mapping.things.viewpoints import Viewpoints
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Bound, Doorway, OccupancyGrid
-from afkb_mapping.predictions.update_rules import CERTAIN
+from afkb.inference.update_rules import CERTAIN
 from afkb_mapping.visits.persistence import MOST_STEADFAST, aged, hazard_of
 
 Array = NDArray[np.float64]

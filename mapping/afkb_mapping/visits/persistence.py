@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from afkb_mapping.predictions.update_rules import CERTAIN, against
+from afkb.inference.update_rules import CERTAIN, against
 
 WEEK_S = 7 * 24 * 3600.0
 """How long a thing stays with the probability that the ontology states as its matching weight."""
