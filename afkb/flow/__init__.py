@@ -5,6 +5,7 @@ source → `View` → detectors → `Detection` → filtrations and network → 
 """
 
 from afkb.flow.detection import Detection, OrientedBox, Primitive
+from afkb.flow.evidence import Change, ChangeKind, Sighting
 from afkb.flow.hypothesis import Hypothesis, Relation
 from afkb.flow.loops import LoopKind, LoopProposal
 from afkb.flow.sensing import LaserScan, PinholeCamera, SkippedFrame, View
@@ -24,6 +25,8 @@ from afkb.flow.topological_map import (
 
 __all__ = [
     "Bound",
+    "Change",
+    "ChangeKind",
     "Closure",
     "Detection",
     "Doorway",
@@ -42,6 +45,7 @@ __all__ = [
     "Relation",
     "RobotPlace",
     "Room",
+    "Sighting",
     "SkippedFrame",
     "TopologicalMap",
     "View",

@@ -10,6 +10,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb.flow.evidence import Change, Sighting
 from afkb.flow.loops import LoopProposal
 
 
@@ -58,6 +59,8 @@ class Entity:
     - `supported_by`, `part_of`, `room`: ids or None. `predicted_from`: ids of entities.
     - `predicted_first`: kind under which it was predicted before it was seen, else None.
     - `generated_by`: detectors or predictors; `axioms`: IRIs behind it.
+    - `sightings`: the views that showed most of it; `history`: the last steps of its existence,
+      oldest first, which lead to it.
     """
 
     id: str
@@ -83,7 +86,8 @@ class Entity:
     axioms: tuple[str, ...] = ()
     extent_known: bool = True
     polygon_xy: NDArray[np.float64] | None = None
-    evidence: tuple[str, ...] = ()
+    sightings: tuple[Sighting, ...] = ()
+    history: tuple[Change, ...] = ()
 
     def affords(self, feature: str, at_least: float = 0.5) -> bool:
         """Whether it affords the feature with at least that probability."""
@@ -138,7 +142,8 @@ class Room:
 
     `belief` sums to 1 and has `UnknownRoom` among its keys. `visited`: the robot stood in it.
     `connected_to`: ids of rooms that one gets to from it directly, through a doorway or over the
-    open border of two parts of an open plan.
+    open border of two parts of an open plan. `evidence`: evidence class to how many things of it
+    were counted; what is 0 was looked for.
     """
 
     id: str
@@ -149,6 +154,7 @@ class Room:
     belief: Mapping[str, float]
     visited: bool = True
     connected_to: tuple[str, ...] = ()
+    evidence: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

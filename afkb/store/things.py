@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from pyoxigraph import NamedNode
+from pyoxigraph import Literal, NamedNode
 
 from afkb.flow import (
     Bound,
+    Change,
     Closure,
     Doorway,
     Edge,
@@ -16,6 +17,7 @@ from afkb.flow import (
     NodeKind,
     RobotPlace,
     Room,
+    Sighting,
 )
 from afkb.store.scribe import Scribe, polygon_wkt, ranked
 from afkb.store.vocabulary import term
@@ -104,7 +106,40 @@ def _provenance(scribe: Scribe, node: NamedNode, entity: Entity) -> None:
     scribe.say(node, "prov:wasGeneratedBy", *_makers(scribe, entity.generated_by))
     scribe.say(node, "prov:wasDerivedFrom", *(_axiom(scribe, a) for a in entity.axioms))
     scribe.say(node, "prov:wasDerivedFrom", *map(scribe.node, entity.predicted_from))
-    scribe.say(node, "afn:sighting", *entity.evidence)
+    for number, sighting in enumerate(entity.sightings, start=1):
+        _sighting(scribe, node, number, sighting)
+    for number, change in enumerate(entity.history, start=1):
+        _change(scribe, node, number, change)
+
+
+def _sighting(scribe: Scribe, node: NamedNode, number: int, sighting: Sighting) -> None:
+    """What one view showed of a thing."""
+    seen = NamedNode(f"{node.value}-sighting-{number}")
+    scribe.say(node, "afn:sighting", seen)
+    scribe.say(seen, "rdf:type", term("afn:Sighting"))
+    scribe.say(seen, "afn:viewIndex", sighting.view)
+    scribe.say(seen, "afn:stamp", float(sighting.stamp))
+    scribe.say(seen, "afn:pixels", sighting.n_pixels)
+    scribe.say(seen, "afn:range", float(sighting.range_m))
+    if sighting.image_box is not None:
+        scribe.say(seen, "afn:imageBox", " ".join(map(str, sighting.image_box)))
+    told = (f"{name} {p:.4f}" for name, p in ranked(sighting.affordances))
+    scribe.say(seen, "afn:told", ", ".join(told) or None)
+    scribe.say(seen, "prov:wasGeneratedBy", *_makers(scribe, sighting.detectors))
+
+
+def _change(scribe: Scribe, node: NamedNode, number: int, change: Change) -> None:
+    """One step of its existence."""
+    step = NamedNode(f"{node.value}-change-{number}")
+    scribe.say(node, "afn:change", step)
+    scribe.say(step, "rdf:type", term("afn:Change"))
+    scribe.say(step, "afn:changeKind", change.kind.value)
+    scribe.say(step, "afn:weighed", Literal(round(float(change.evidence), 9)))
+    if change.before is not None:
+        scribe.probability(step, "afn:before", change.before)
+    scribe.probability(step, "afn:probability", change.after)
+    scribe.say(step, "afn:stamp", float(change.stamp))
+    scribe.say(step, "afn:viewIndex", change.view)
 
 
 def _makers(scribe: Scribe, names: tuple[str, ...]) -> list[NamedNode]:
@@ -161,6 +196,11 @@ def describe_room(scribe: Scribe, room: Room) -> None:
     scribe.say(node, "afn:visited", bool(room.visited))
     scribe.say(node, "afn:connectedTo", *map(scribe.node, room.connected_to))
     scribe.belief(node, "room", "roomCategory", ranked(room.belief))
+    for name, count in sorted(room.evidence.items()):
+        counted = NamedNode(f"{node.value}-evidence-{name}")
+        scribe.say(node, "afn:counted", counted)
+        scribe.say(counted, "afn:ofEvidenceClass", scribe.individual(name))
+        scribe.say(counted, "rdf:value", int(count))
     if len(room.polygon_xy) > 1:
         scribe.geometry(node, polygon_wkt(room.polygon_xy))
 

@@ -106,7 +106,7 @@ class AffordanceMapper:
             # What was gone already leaves its place to what is put there.
             for track in [t for t in tracks if not t.is_floor and t.existence < GONE_BELOW]:
                 tracks.remove(track)
-        age(tracks, seconds, lambda track: hazard_of_track(track, self._network))
+        age(tracks, seconds, stamp, lambda track: hazard_of_track(track, self._network))
 
     def _confirm(self, observed: Sequence[ObservedTrack | None], view: View) -> None:
         """What is seen for sure gives a prediction its place; what is doubtful confirms nothing."""
@@ -152,7 +152,7 @@ class AffordanceMapper:
         sight, eye = Sight(view), eye_of(view)
         for track in self._association.tracks.near(*sight.reach):
             if track.id not in seen:
-                look_at(track, sight, eye)
+                look_at(track, sight, eye, view)
         self._expectations.look_for(sight, eye)
 
     def _link(

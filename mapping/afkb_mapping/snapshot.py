@@ -145,9 +145,10 @@ def _rooms(
     visited |= {lookup.nearest_room(T[0, 3], T[1, 3]) for _, T in content.trajectory}
     for shape in segmentation.rooms:
         id_ = room_id(shape.label)
-        belief = evidence.posterior(segmentation.labels == shape.label)
+        part = segmentation.labels == shape.label
         at = (id_, *shape.inside_xy, shape.area, shape.polygon_xy)
-        yield Room(*at, belief, id_ in visited, beside.get(id_, ()))
+        seen = id_ in visited, beside.get(id_, ())
+        yield Room(*at, evidence.posterior(part), *seen, evidence=evidence.counts(part))
 
 
 def _with_things(grid: OccupancyGrid, entities: Sequence[Entity]) -> OccupancyGrid:

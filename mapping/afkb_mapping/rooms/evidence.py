@@ -51,14 +51,15 @@ class RoomEvidence:
 
         Where the robot has looked, that something is not there counts, too.
         """
-        return self._network.room_posterior(self._counts(part))
+        return self._network.room_posterior(self.counts(part))
 
     def purpose(self, part: Mask) -> dict[str, float] | None:
         """The same, but None where nothing that tells of a purpose is in the part."""
-        counts = self._counts(part)
+        counts = self.counts(part)
         return self._network.room_posterior(counts) if any(counts.values()) else None
 
-    def _counts(self, part: Mask) -> Counter[str]:
+    def counts(self, part: Mask) -> Counter[str]:
+        """Evidence class to how many things of it the part holds; 0 of what was looked for."""
         counts: Counter[str] = Counter()
         if part[tuple(self._eyes.T)].any():
             counts.update(dict.fromkeys(self._network.evidence_looked_for(SEEN_RELIABLY), 0))

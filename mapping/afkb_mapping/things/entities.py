@@ -117,7 +117,8 @@ def _observed(
         axioms=tuple(track.axioms),
         extent_known=track.extent_known,
         polygon_xy=outline.polygon_xy,
-        evidence=tuple(track.evidence),
+        sightings=tuple(track.sightings),
+        history=tuple(track.life.history),
     )
 
 

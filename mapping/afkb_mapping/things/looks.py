@@ -7,11 +7,17 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import View
+from afkb.flow import ChangeKind, View
 from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.things.visibility import Look, Sight
-from afkb_mapping.visits.persistence import HOUR_S, aged, overlooked, seen_through
+from afkb_mapping.visits.persistence import (
+    EMPTY_LIKELIHOOD_RATIO,
+    HOUR_S,
+    OVERLOOKED_LIKELIHOOD_RATIO,
+    aged,
+    seen_through,
+)
 
 LOOKED_AT_SHARE = 0.7
 """A look tells of a thing if so much of it is in view, and tells one thing of so much of that."""
@@ -29,7 +35,7 @@ def is_empty(found: Look) -> bool:
     return found.in_view >= LOOKED_AT_SHARE and found.empty >= LOOKED_AT_SHARE
 
 
-def look_at(track: ObservedTrack, sight: Sight, eye: NDArray[np.float64]) -> None:
+def look_at(track: ObservedTrack, sight: Sight, eye: NDArray[np.float64], view: View) -> None:
     """Take in that a view did not detect a thing: what is seen through counts against it.
 
     The paper has no such term.
@@ -37,9 +43,11 @@ def look_at(track: ObservedTrack, sight: Sight, eye: NDArray[np.float64]) -> Non
     body = track.footprint.points()
     found = sight.look(body, track.look_height_m)
     if is_empty(found) and track.empty_from.is_new(eye, body[0]):
-        track.existence = seen_through(track.existence)
+        kind, ratio = ChangeKind.SEEN_THROUGH, EMPTY_LIKELIHOOD_RATIO
+        track.life.take(kind, ratio, view.stamp, view.index)
     elif _is_overlooked(track, found, eye) and track.missed_from.is_new(eye, body[0]):
-        track.existence = overlooked(track.existence)
+        kind, ratio = ChangeKind.OVERLOOKED, OVERLOOKED_LIKELIHOOD_RATIO
+        track.life.take(kind, ratio, view.stamp, view.index)
 
 
 def look_for(prediction: PredictedTrack, sight: Sight, eye: NDArray[np.float64]) -> None:
@@ -50,13 +58,16 @@ def look_for(prediction: PredictedTrack, sight: Sight, eye: NDArray[np.float64])
 
 
 def age(
-    tracks: Iterable[ObservedTrack], seconds: float, hazard: Callable[[ObservedTrack], float]
+    tracks: Iterable[ObservedTrack],
+    seconds: float,
+    stamp: float,
+    hazard: Callable[[ObservedTrack], float],
 ) -> None:
-    """Let time pass over things: they may have been moved, and looks at them tell anew."""
+    """Let time pass over things up to a stamp: they may have been moved, and looks tell anew."""
     for track in tracks:
         if track.is_floor:
             continue
-        track.existence = aged(track.existence, seconds, hazard(track))
+        track.life.take(ChangeKind.AGED, aged(1.0, seconds, hazard(track)), stamp)
         if seconds >= HOUR_S:
             track.forget_looks()
 

@@ -8,15 +8,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import Detection, NodeKind
-from afkb.inference.update_rules import CERTAIN, log_odds
+from afkb.flow import ChangeKind, Detection, NodeKind, Sighting
+from afkb.inference.update_rules import CERTAIN
 from afkb_mapping.calibration import SCORE
+from afkb_mapping.things.existence import Existence
 from afkb_mapping.things.footprint import Footprint
 from afkb_mapping.things.viewpoints import Viewpoints
 
 SURFACE_CELL_M = 0.04
 THING_CELL_M = 0.01
-KEPT_EVIDENCE = 5
+KEPT_SIGHTINGS = 5
 UNSAID = 0.05
 """What a whole view from nearby is taken to say of a feature that no detector speaks of in it:
 detectors leave out what they hold for next to impossible. From further away than the feature was
@@ -55,7 +56,7 @@ class ObservedTrack:
     is_surface: bool
     footprint: Footprint
     is_floor: bool = False
-    existence: float = 0.5
+    life: Existence = field(default_factory=Existence)
     top: WeightedMean = field(default_factory=WeightedMean)
     bottom: WeightedMean = field(default_factory=WeightedMean)
     affordance_sums: dict[str, tuple[float, float]] = field(default_factory=dict)
@@ -73,10 +74,15 @@ class ObservedTrack:
     last_view: int = -1
     places: dict[str, None] = field(default_factory=dict)
     detectors: dict[str, None] = field(default_factory=dict)
-    evidence: list[str] = field(default_factory=list)
+    sightings: list[Sighting] = field(default_factory=list)
     predicted_first: NodeKind | None = None
     predicted_from: dict[str, None] = field(default_factory=dict)
     axioms: dict[str, None] = field(default_factory=dict)
+
+    @property
+    def existence(self) -> float:
+        """Probability that it exists now."""
+        return self.life.probability
 
     @property
     def affordances(self) -> dict[str, float]:
@@ -116,7 +122,7 @@ class ObservedTrack:
         strength = _strength(detection)
         self.strength_sum += strength * detection.n_pixels
         if self.viewpoints.is_new(camera_xy, detection.position_xyz[:2]):
-            self._believe(min(strength, CERTAIN))
+            self._believe(min(strength, CERTAIN), stamp, view_index)
         self._hear(detection)
         self.observations += view_index != self.last_view
         self.pixels += detection.n_pixels
@@ -125,8 +131,7 @@ class ObservedTrack:
         self.last_view = view_index
         self.detectors.update(dict.fromkeys(detection.detectors))
         self.pixels_of_known_extent += detection.n_pixels * detection.extent_known
-        if len(self.evidence) < KEPT_EVIDENCE:
-            self.evidence.append(_evidence(detection, view_index))
+        self._keep([_sighting(detection, view_index, stamp)])
 
     def _hear(self, detection: Detection) -> None:
         """Take in what a view says of what the thing affords, and what it doesn't say."""
@@ -142,10 +147,15 @@ class ObservedTrack:
             weight, total = self.affordance_sums.get(name, (0.0, 0.0))
             self.affordance_sums[name] = (weight + n, total + n * p)
 
-    def _believe(self, strength: float) -> None:
+    def _keep(self, sightings: list[Sighting]) -> None:
+        """Keep the sightings that show most of it."""
+        best = sorted([*self.sightings, *sightings], key=lambda s: (-s.n_pixels, s.view))
+        self.sightings = best[:KEPT_SIGHTINGS]
+
+    def _believe(self, strength: float, stamp: float, view: int) -> None:
         """Existence after a sighting: a faint one of what is known already says nothing against."""
-        first = not self.observations
-        self.existence = strength if first else log_odds(self.existence, max(strength, 0.5))
+        told = max(strength, 0.5) if self.life.history else strength
+        self.life.take(ChangeKind.SIGHTED, told, stamp, view)
 
     def forget_looks(self) -> None:
         """Let looks from where it was looked at before be evidence again: time has passed."""
@@ -157,7 +167,8 @@ class ObservedTrack:
         self.footprint.absorb(other.footprint)
         self.top.absorb(other.top)
         self.bottom.absorb(other.bottom)
-        self.existence = max(self.existence, other.existence)
+        if other.existence > self.existence:
+            self.life = other.life
         for name, (w, total) in other.affordance_sums.items():
             mine = self.affordance_sums.get(name, (0.0, 0.0))
             self.affordance_sums[name] = (mine[0] + w, mine[1] + total)
@@ -178,7 +189,7 @@ class ObservedTrack:
             (self.axioms, other.axioms),
         ):
             mine_.update(theirs)
-        self.evidence = (self.evidence + other.evidence)[:KEPT_EVIDENCE]
+        self._keep(other.sightings)
         self.pixels_of_known_extent += other.pixels_of_known_extent
         self.predicted_first = self.predicted_first or other.predicted_first
 
@@ -193,9 +204,13 @@ def _strength(detection: Detection) -> float:
     return max(min(max(d.affordances.values()), d.measures.get(SCORE, 1.0)) for d in told)
 
 
-def _evidence(detection: Detection, view_index: int) -> str:
-    where = ""
-    if detection.image_box is not None:
-        u0, v0, u1, v1 = detection.image_box
-        where = f", image {u0},{v0} to {u1},{v1}"
-    return f"{' and '.join(detection.detectors)}: view {view_index}{where}, {detection.n_pixels} px"
+def _sighting(detection: Detection, view_index: int, stamp: float) -> Sighting:
+    return Sighting(
+        view=view_index,
+        stamp=stamp,
+        detectors=detection.detectors,
+        n_pixels=detection.n_pixels,
+        range_m=detection.range_m,
+        image_box=detection.image_box,
+        affordances=dict(detection.affordances),
+    )
