@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import PurePath
 
-from pyoxigraph import Triple
+from pyoxigraph import NamedNode, Triple
 
 from afkb import __version__
 from afkb.flow import TopologicalMap
@@ -82,6 +83,7 @@ def _describe_run(
             value = parameters.get(fact)
             if isinstance(value, str | int | float):
                 scribe.say(activity, f"afn:{fact}", value)
+    _describe_ontology(scribe, activity, run.get("ontology"))
     makers = {maker for entity in topological_map.entities for maker in entity.generated_by}
     makers |= {maker for bound in topological_map.bounds for maker in bound.generated_by}
     for maker in sorted(makers):
@@ -89,3 +91,13 @@ def _describe_run(
         scribe.say(part, "rdf:type", term("prov:Activity"))
         scribe.say(part, "rdfs:label", maker)
         scribe.say(part, "prov:wasInformedBy", activity)
+
+
+def _describe_ontology(scribe: Scribe, activity: NamedNode, files: object) -> None:
+    """The ontology that the run was made with, by what its files say and not where they are."""
+    for number, entry in enumerate(files if isinstance(files, list) else [], start=1):
+        file = scribe.node(f"ontology-{number}")
+        scribe.say(activity, "prov:used", file)
+        scribe.say(file, "rdf:type", term("prov:Entity"))
+        scribe.say(file, "rdfs:label", PurePath(entry["file"]).name)
+        scribe.say(file, "afn:sha256", entry["sha256"])

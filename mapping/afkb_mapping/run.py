@@ -13,6 +13,7 @@ from afkb.errors import BadFrame, SourceError
 from afkb.flow import SkippedFrame, TopologicalMap, View
 from afkb.plugins.host import PluginHost
 from afkb.store import check_out, write_map
+from afkb.store.made_with import ontology_record
 from afkb_mapping.crew import Crew
 from afkb_mapping.interruption import Interruption
 from afkb_mapping.localisation.bands import STATE_FILE
@@ -89,6 +90,7 @@ def make_map(
             found,
             beginning.memory.visits,
         )
+        run["ontology"] = ontology_record(host.knowledge_base.files)
         write_map(
             settings.out,
             found,
