@@ -7,6 +7,7 @@ import pytest
 from scipy import ndimage
 
 from afkb.errors import MapError, RouteError
+from afkb.finding import Node, RoomNode, Surroundings
 from afkb.flow import OccupancyGrid
 from afkb.knowledge import AfNet
 from afkb_mapping.routes.ends import Kind, end_of
@@ -52,7 +53,19 @@ def two_rooms(gap_m: float = 0.8, things=(), drawn=()) -> RouteMap:
     }
     doors = {"doorway-1": Spot("doorway-1", np.array([4.025, 2.0]), None, gap_m, 0.0)}
     stored = StoredGrid(OccupancyGrid(p, CELL_M, (0.0, 0.0)), 0.196, 0.65)
-    return RouteMap(stored, {t.id: t for t in things}, spots, doors, rooms)
+    return RouteMap(
+        stored, {t.id: t for t in things}, spots, doors, rooms, surroundings(things, rooms)
+    )
+
+
+def surroundings(things, rooms) -> Surroundings:
+    nodes = [
+        Node(t.id, t.kind, *t.xy, 0.8, t.existence, t.belief, t.room, viewpoints=1) for t in things
+    ]
+    return Surroundings(
+        {n.id: n for n in nodes},
+        {r.id: RoomNode(r.id, *r.xy, r.belief, 1) for r in rooms.values()},
+    )
 
 
 @pytest.fixture(scope="module")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from afkb.errors import RouteError
+from afkb.finding.names import find_category, near_names, squeezed
 from afkb_mapping.routes.route_map import MappedRoom, RouteMap, Spot, Thing
 
 if TYPE_CHECKING:
@@ -40,14 +40,13 @@ def end_of(text: str, known: RouteMap, kb: AfNet) -> End:
     if point := POINT.fullmatch(text):
         return Spot(text.replace(" ", ""), np.array([float(point[1]), float(point[2])]))
     ids: dict[str, End] = {**known.places, **known.doorways, **known.rooms, **known.things}
-    named = {_plain(id_): end for id_, end in ids.items()}
-    if end := named.get(_plain(text)):
+    named = {squeezed(id_): end for id_, end in ids.items()}
+    if end := named.get(squeezed(text)):
         return end
-    rooms = {_plain(name): name for name in kb.rooms}
-    if category := rooms.get(_plain(text)):
+    rooms = {squeezed(name): name for name in kb.rooms}
+    if category := rooms.get(squeezed(text)):
         return _room(category, known)
-    kinds = {_plain(name): name for name in kb.categories}
-    if category := kinds.get(_plain(text)):
+    if category := find_category(text, kb):
         return Kind(category)
     raise RouteError(_unknown(text, [*ids, *kb.rooms, *kb.categories]))
 
@@ -72,12 +71,6 @@ def _room(category: str, known: RouteMap) -> MappedRoom:
 
 
 def _unknown(text: str, names: list[str]) -> str:
-    plain = {_plain(name): name for name in names}
-    near = [plain[n] for n in get_close_matches(_plain(text), plain, n=4, cutoff=0.6)]
+    near = near_names(text, names)
     hint = f"did you mean {', '.join(near)}?" if near else "see `afkb info` and `afkb rooms`"
     return f"{text!r} is no x,y, no node or room of the map, and no category; {hint}"
-
-
-def _plain(name: str) -> str:
-    """A name without case, spaces and hyphens, but for the number that ends an id."""
-    return re.sub(r"[\s_-]+", "", name).casefold()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb.finding import Surroundings
 from afkb.store import StoredMap, load
 from afkb.store.vocabulary import local_name
 from afkb_mapping.routes.stored_grid import StoredGrid, read_grid
@@ -64,13 +65,17 @@ class MappedRoom:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RouteMap:
-    """A map as routes see it; things, places, doorways and rooms by id."""
+    """A map as routes see it; things, places, doorways and rooms by id.
+
+    `surroundings`: the same map as finding sees it, which says where a thing may be.
+    """
 
     grid: StoredGrid
     things: Mapping[str, Thing]
     places: Mapping[str, Spot]
     doorways: Mapping[str, Spot]
     rooms: Mapping[str, MappedRoom]
+    surroundings: Surroundings = field(default_factory=Surroundings)
 
     @property
     def ids(self) -> set[str]:
@@ -87,6 +92,7 @@ class RouteMap:
             {s.id: s for s in _spots(stored, "RobotPlace")},
             {s.id: s for s in _spots(stored, "Doorway")},
             {r.id: r for r in _rooms(stored)},
+            Surroundings.of(stored),
         )
 
 
