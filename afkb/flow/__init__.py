@@ -8,6 +8,11 @@ from afkb.flow.detection import Detection, OrientedBox, Primitive
 from afkb.flow.evidence import Change, ChangeKind, Sighting
 from afkb.flow.hypothesis import Hypothesis, Relation
 from afkb.flow.loops import LoopKind, LoopProposal
+from afkb.flow.prediction import (
+    PastPrediction,
+    PredictionState,
+    Region,
+)
 from afkb.flow.sensing import LaserScan, PinholeCamera, SkippedFrame, View
 from afkb.flow.topological_map import (
     Bound,
@@ -40,8 +45,11 @@ __all__ = [
     "NodeKind",
     "OccupancyGrid",
     "OrientedBox",
+    "PastPrediction",
     "PinholeCamera",
+    "PredictionState",
     "Primitive",
+    "Region",
     "Relation",
     "RobotPlace",
     "Room",

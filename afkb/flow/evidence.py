@@ -35,6 +35,9 @@ class ChangeKind(StrEnum):
     AGED = "Aged"
     PREDICTED = "Predicted"
     PREDICTED_AGAIN = "PredictedAgain"
+    WALLED_OFF = "WalledOff"
+    EVIDENCE_GONE = "EvidenceGone"
+    CONFIRMED = "Confirmed"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +47,7 @@ class Change:
     - `evidence`: what the step weighs, as `afkb.inference.existence.after` takes it: a sighting's
       or prediction's strength, a look's likelihood ratio, the share that time leaves.
     - `before`: None where this is the first that is known of it. `view`: index, where a view did
-      it; `stamp`: s.
+      it; `stamp`: s. `by`: ids of the things that spoke for a prediction, or confirmed it.
     """
 
     kind: ChangeKind
@@ -53,3 +56,4 @@ class Change:
     after: float
     stamp: float
     view: int | None = None
+    by: tuple[str, ...] = ()

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from afkb.flow.evidence import Change, Sighting
 from afkb.flow.loops import LoopProposal
+from afkb.flow.prediction import PastPrediction, PredictionState, Region
 
 
 class NodeKind(StrEnum):
@@ -61,6 +62,7 @@ class Entity:
     - `generated_by`: detectors or predictors; `axioms`: IRIs behind it.
     - `sightings`: the views that showed most of it; `history`: the last steps of its existence,
       oldest first, which lead to it.
+    - `region`: of a predicted one, where it may be; `state`: how the prediction stands.
     """
 
     id: str
@@ -88,6 +90,8 @@ class Entity:
     polygon_xy: NDArray[np.float64] | None = None
     sightings: tuple[Sighting, ...] = ()
     history: tuple[Change, ...] = ()
+    region: Region | None = None
+    state: PredictionState | None = None
 
     def affords(self, feature: str, at_least: float = 0.5) -> bool:
         """Whether it affords the feature with at least that probability."""
@@ -211,9 +215,10 @@ class TopologicalMap:
 
     - `T_map_source` (4, 4): from the source's pose frame to the map frame at the first view.
     - `trajectory` (N, 17): stamp (s), then T_map_base (4x4) row by row, one row a view.
-    - `closures`: predictions that came true; `loops`: places that were, or may have been, seen
-      again, rejected ones with their reason; `notes`: what had to be assumed; `counts`: of the
-      run's bookkeeping (births, merges, refuted predictions).
+    - `closures`: predictions that came true; `past_predictions`: all that came to an end.
+    - `loops`: places that were, or may have been, seen again, rejected ones with their reason.
+    - `notes`: what had to be assumed; `counts`: of the run's bookkeeping (births, merges, refuted
+      predictions).
     """
 
     places: tuple[RobotPlace, ...]
@@ -226,6 +231,7 @@ class TopologicalMap:
     T_map_source: NDArray[np.float64]
     trajectory: NDArray[np.float64]
     closures: tuple[Closure, ...] = ()
+    past_predictions: tuple[PastPrediction, ...] = ()
     loops: tuple[LoopProposal, ...] = ()
     notes: tuple[str, ...] = ()
     counts: Mapping[str, int] = field(default_factory=dict)

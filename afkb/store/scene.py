@@ -10,6 +10,7 @@ from pyoxigraph import NamedNode, Triple
 from afkb import __version__
 from afkb.flow import TopologicalMap
 from afkb.store import things
+from afkb.store.predictions import describe_past
 from afkb.store.scribe import Names, Scribe
 from afkb.store.turtle import fingerprint
 from afkb.store.vocabulary import FORMAT_VERSION, SCENES, term
@@ -50,6 +51,8 @@ def scene_triples(
         things.describe_edge(scribe, edge)
     for number, closure in enumerate(topological_map.closures, start=1):
         things.describe_closure(scribe, number, closure)
+    for past in topological_map.past_predictions:
+        describe_past(scribe, past)
     accepted = (p for p in topological_map.loops if p.accepted)
     for number, loop in enumerate(accepted, start=1):
         things.describe_correction(scribe, number, loop)
@@ -86,6 +89,7 @@ def _describe_run(
     _describe_ontology(scribe, activity, run.get("ontology"))
     makers = {maker for entity in topological_map.entities for maker in entity.generated_by}
     makers |= {maker for bound in topological_map.bounds for maker in bound.generated_by}
+    makers |= {past.generated_by for past in topological_map.past_predictions}
     for maker in sorted(makers):
         part = scribe.node(f"by-{maker}")
         scribe.say(part, "rdf:type", term("prov:Activity"))

@@ -61,6 +61,15 @@ class Scribe:
             self.say(unknown, "rdfs:comment", "used by a plugin; no ontology in use describes it")
             return unknown
 
+    def axiom(self, axiom: str) -> NamedNode:
+        """A statement of the ontology by its IRI; what is no IRI is named in this scene."""
+        is_iri = "://" in axiom or axiom.startswith("urn:")
+        return NamedNode(axiom) if is_iri else self.node(axiom)
+
+    def makers(self, names: Iterable[str]) -> list[NamedNode]:
+        """The activities of detectors, predictors or rules in this run."""
+        return [self.node(f"by-{name}") for name in names]
+
     def scale_of(self, size_xyz: tuple[float, float, float]) -> NamedNode:
         """The IRI of the scale of a thing of that size, m."""
         return self.individual(self._names.scale_of(size_xyz))

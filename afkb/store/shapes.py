@@ -49,6 +49,8 @@ def _more(stored: StoredMap, node: NamedNode, kind: str) -> Json:
             more[key] = value
     if anchors := stored.names(node, "afn:predictedFrom"):
         more["predicted_from"] = anchors
+    if state := stored.name(node, "afn:predictionState"):
+        more["state"] = state
     if stored.name(node, "afn:extentKnown") == "false":
         more["extent_known"] = False
     return more
@@ -104,6 +106,23 @@ def closures_json(stored: StoredMap) -> list[Json]:
     ]
 
 
+def past_predictions_json(stored: StoredMap) -> list[Json]:
+    """Predictions that came to an end: as what, where (m), how probable, and what came of them."""
+    return [
+        {
+            "id": local_name(past.value),
+            "predicted_as": stored.name(past, "afn:predictedAs"),
+            "state": stored.name(past, "afn:predictionState"),
+            **{axis: round(stored.number(past, f"afn:{axis}"), 3) for axis in "xyz"},
+            "affords": stored.names(past, "afn:expectedAffordance"),
+            "probability": round(stored.number(past, "afn:probability"), 4),
+            "seen_as": stored.name(past, "afn:confirmedBy"),
+            "axioms": stored.names(past, "prov:wasDerivedFrom"),
+        }
+        for past in stored.instances("PastPrediction")
+    ]
+
+
 def info_json(stored: StoredMap) -> Json:
     """Everything `afkb info --json` prints."""
     return {
@@ -112,6 +131,7 @@ def info_json(stored: StoredMap) -> Json:
         "counts": stored.counts,
         "nodes": nodes_json(stored),
         "closures": closures_json(stored),
+        "past_predictions": past_predictions_json(stored),
         "notes": stored.notes,
     }
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from pyoxigraph import Literal, NamedNode
+from pyoxigraph import NamedNode
 
 from afkb.flow import (
     Bound,
-    Change,
     Closure,
     Doorway,
     Edge,
@@ -17,8 +16,9 @@ from afkb.flow import (
     NodeKind,
     RobotPlace,
     Room,
-    Sighting,
 )
+from afkb.store.evidence import describe_history, describe_sightings
+from afkb.store.predictions import describe_life
 from afkb.store.scribe import Scribe, polygon_wkt, ranked
 from afkb.store.vocabulary import term
 
@@ -47,6 +47,7 @@ def describe_entity(scribe: Scribe, entity: Entity) -> None:
     _beliefs(scribe, node, entity)
     _relations(scribe, node, entity)
     _provenance(scribe, node, entity)
+    describe_life(scribe, node, entity.state, entity.region)
 
 
 def _position(scribe: Scribe, node: NamedNode, x: float, y: float, z: float) -> None:
@@ -103,51 +104,11 @@ def _provenance(scribe: Scribe, node: NamedNode, entity: Entity) -> None:
     if entity.predicted_first is not None:
         scribe.say(node, "afn:predictedFirst", term(f"afn:{entity.predicted_first.value}"))
     scribe.say(node, "prov:wasGeneratedBy", scribe.node("run"))
-    scribe.say(node, "prov:wasGeneratedBy", *_makers(scribe, entity.generated_by))
-    scribe.say(node, "prov:wasDerivedFrom", *(_axiom(scribe, a) for a in entity.axioms))
+    scribe.say(node, "prov:wasGeneratedBy", *scribe.makers(entity.generated_by))
+    scribe.say(node, "prov:wasDerivedFrom", *map(scribe.axiom, entity.axioms))
     scribe.say(node, "prov:wasDerivedFrom", *map(scribe.node, entity.predicted_from))
-    for number, sighting in enumerate(entity.sightings, start=1):
-        _sighting(scribe, node, number, sighting)
-    for number, change in enumerate(entity.history, start=1):
-        _change(scribe, node, number, change)
-
-
-def _sighting(scribe: Scribe, node: NamedNode, number: int, sighting: Sighting) -> None:
-    """What one view showed of a thing."""
-    seen = NamedNode(f"{node.value}-sighting-{number}")
-    scribe.say(node, "afn:sighting", seen)
-    scribe.say(seen, "rdf:type", term("afn:Sighting"))
-    scribe.say(seen, "afn:viewIndex", sighting.view)
-    scribe.say(seen, "afn:stamp", float(sighting.stamp))
-    scribe.say(seen, "afn:pixels", sighting.n_pixels)
-    scribe.say(seen, "afn:range", float(sighting.range_m))
-    if sighting.image_box is not None:
-        scribe.say(seen, "afn:imageBox", " ".join(map(str, sighting.image_box)))
-    told = (f"{name} {p:.4f}" for name, p in ranked(sighting.affordances))
-    scribe.say(seen, "afn:told", ", ".join(told) or None)
-    scribe.say(seen, "prov:wasGeneratedBy", *_makers(scribe, sighting.detectors))
-
-
-def _change(scribe: Scribe, node: NamedNode, number: int, change: Change) -> None:
-    """One step of its existence."""
-    step = NamedNode(f"{node.value}-change-{number}")
-    scribe.say(node, "afn:change", step)
-    scribe.say(step, "rdf:type", term("afn:Change"))
-    scribe.say(step, "afn:changeKind", change.kind.value)
-    scribe.say(step, "afn:weighed", Literal(round(float(change.evidence), 9)))
-    if change.before is not None:
-        scribe.probability(step, "afn:before", change.before)
-    scribe.probability(step, "afn:probability", change.after)
-    scribe.say(step, "afn:stamp", float(change.stamp))
-    scribe.say(step, "afn:viewIndex", change.view)
-
-
-def _makers(scribe: Scribe, names: tuple[str, ...]) -> list[NamedNode]:
-    return [scribe.node(f"by-{name}") for name in names]
-
-
-def _axiom(scribe: Scribe, axiom: str) -> NamedNode:
-    return NamedNode(axiom) if "://" in axiom or axiom.startswith("urn:") else scribe.node(axiom)
+    describe_sightings(scribe, node, entity.sightings)
+    describe_history(scribe, node, entity.history)
 
 
 def describe_bound(scribe: Scribe, bound: Bound) -> None:
@@ -168,7 +129,7 @@ def describe_bound(scribe: Scribe, bound: Bound) -> None:
         scribe.say(node, "afn:offsetSigma", float(offset))
         scribe.say(node, "afn:yawSigma", float(turn))
     scribe.geometry(node, polygon_wkt(ends))
-    scribe.say(node, "prov:wasGeneratedBy", *_makers(scribe, bound.generated_by))
+    scribe.say(node, "prov:wasGeneratedBy", *scribe.makers(bound.generated_by))
     _in_room(scribe, node, bound.room)
 
 

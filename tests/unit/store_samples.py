@@ -8,6 +8,8 @@ import numpy as np
 
 from afkb.flow import (
     Bound,
+    Change,
+    ChangeKind,
     Closure,
     Doorway,
     Edge,
@@ -17,6 +19,10 @@ from afkb.flow import (
     LoopProposal,
     NodeKind,
     OccupancyGrid,
+    PastPrediction,
+    PredictionState,
+    Region,
+    Relation,
     RobotPlace,
     Room,
     TopologicalMap,
@@ -38,6 +44,30 @@ class Names:
 
     def scale_of(self, size_xyz: tuple[float, float, float]) -> str:
         return "Small" if max(size_xyz) < 0.35 else "Large"
+
+
+def past_prediction() -> PastPrediction:
+    """The hidden table, before it was seen."""
+    steps = (
+        Change(ChangeKind.PREDICTED, 0.7, None, 0.7, 1.5, 0, ("n2",)),
+        Change(ChangeKind.CONFIRMED, 1.0, 0.7, 1.0, 9.25, 40, ("n1",)),
+    )
+    return PastPrediction(
+        id="n4",
+        kind=NodeKind.DUAL.value,
+        state=PredictionState.CONFIRMED,
+        position_xyz=(2.1, 1.1, 0.72),
+        affordances={"SupportAbility": 1.0},
+        probability=0.7,
+        relation=Relation.BELOW,
+        first_seen=1.5,
+        ended=9.25,
+        history=steps,
+        generated_by="filtrations",
+        predicted_from=("n2",),
+        axioms=("https://w3id.org/afkb/afnet#dual-contain-support",),
+        seen_as="n1",
+    )
 
 
 def square(x: float, y: float, half: float) -> np.ndarray:
@@ -101,6 +131,11 @@ def sample_entities() -> tuple[Entity, ...]:
         predicted_from=("n2",),
         generated_by=("filtrations",),
         axioms=("https://w3id.org/afkb/afnet#cooc-chair-table",),
+        region=Region(
+            Relation.NEAR, np.array([[2.5, 1.8, 0.75], [2.75, 1.8, 0.25]]), 0.25, (0.62, 0.84)
+        ),
+        state=PredictionState.PREDICTED,
+        history=(Change(ChangeKind.PREDICTED, 0.65, None, 0.65, 1.5, 0, ("n2",)),),
     )
     return table, mug, doubtful, predicted
 
@@ -147,6 +182,7 @@ def sample_map() -> TopologicalMap:
         T_map_source=np.eye(4),
         trajectory=np.array([pose_row(0, 0, 0), pose_row(5, 0.5, 0.4), pose_row(9, 1, 1)]),
         closures=(Closure("n1", NodeKind.DUAL, 0.7, 0.12, "p2", 9.25),),
+        past_predictions=(past_prediction(),),
         loops=(sample_loop(True), sample_loop(False)),
         notes=("n10: its top returns almost no depth; its extent is unknown",),
         counts={"frames": 41, "skipped_frames": 1},

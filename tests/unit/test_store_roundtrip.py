@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from pyoxigraph import NamedNode
 
 import afkb.store.folder as folder_module
 from afkb.errors import MapError
@@ -63,6 +64,27 @@ def test_what_was_written_is_read_back(folder: Path) -> None:
     assert (mug["movability"], mug["matching_weight"]) == ("Dynamic", 0.3)
     assert nodes["n3"]["predicted_from"] == ["n2"]
     assert nodes["n1"]["predicted_first"] == "DualPrediction"
+
+
+def test_a_prediction_tells_its_region_and_its_life(folder: Path) -> None:
+    stored = load(folder)
+    (desk,) = stored.instances("CoOccurrencePrediction")
+    parts = [p for p in stored.values(desk, "afn:regionPart") if isinstance(p, NamedNode)]
+    assert sum(stored.number(p, "afn:probability") for p in parts) == pytest.approx(1)
+    assert stored.name(desk, "afn:regionRelation") == "near"
+    assert stored.name(desk, "afn:predictionState") == "Predicted"
+    (made,) = stored.values(desk, "afn:change")
+    assert isinstance(made, NamedNode)
+    assert stored.name(made, "afn:changeKind") == "Predicted"
+    assert stored.names(made, "afn:byEntity") == ["n2"]
+
+
+def test_a_prediction_that_ended_is_told_and_is_no_node(folder: Path) -> None:
+    told = info_json(load(folder))
+    (past,) = told["past_predictions"]
+    assert (past["id"], past["state"], past["seen_as"]) == ("n4", "Confirmed", "n1")
+    assert past["probability"] == 0.7
+    assert "n4" not in {node["id"] for node in told["nodes"]}
 
 
 def test_what_affords_nothing_for_sure_affords_its_likeliest(folder: Path) -> None:
