@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
-from statistics import median
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from afkb.finding.names import label_of
@@ -54,7 +53,7 @@ def regions(category: str, around: Surroundings, kb: AfNet) -> list[Region]:
     unseen = Unseen.of(category, kinds, kb)
     found = list(things.values())
     for name in (*around.rooms, None):
-        room = _looked_at(around.rooms.get(name or ""), nodes[name])
+        room = around.rooms.get(name or "")
         none = math.prod(1.0 - things[node.id].probability for node in nodes[name])
         if room or nodes[None]:
             found += _unseen(unseen, room, nodes[name], 1.0 - none)
@@ -77,14 +76,6 @@ def _thing(node: Node, kinds: list[str], label: str) -> Region:
     )
     p = min(node.existence * share, 1.0)
     return Region(node.id, "thing", node.x, node.y, node.z, node.room, p, node.seen, reason)
-
-
-def _looked_at(room: RoomNode | None, nodes: list[Node]) -> RoomNode | None:
-    """The room, seen from as many places as its things mostly were: one looks in, too."""
-    looks = [node.viewpoints for node in nodes if node.seen]
-    if room is None or not looks:
-        return room
-    return replace(room, viewpoints=max(room.viewpoints, round(median(looks))))
 
 
 def _unseen(

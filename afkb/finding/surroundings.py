@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
+from statistics import median
 from typing import TYPE_CHECKING
 
 from afkb.store.vocabulary import local_name
@@ -62,7 +63,11 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class RoomNode:
-    """A room with the posterior over what it is for; `viewpoints`: places of the robot in it."""
+    """A room with the posterior over what it is for.
+
+    `viewpoints`: from how many places it was looked at: in which the robot stood, or from which its
+    things mostly were seen, as one looks in, too.
+    """
 
     id: str
     x: float
@@ -85,7 +90,11 @@ class Surroundings:
         places = stored.instances("RobotPlace")
         stood = Counter(stored.name(place, "afn:inRoom") for place in places)
         nodes = [_node(stored, n, kind) for kind in THING_KINDS for n in stored.instances(kind)]
-        rooms = [_room(stored, n, stood) for n in stored.instances("Room")]
+        looks: defaultdict[str | None, list[int]] = defaultdict(list)
+        for node in nodes:
+            if node.seen:
+                looks[node.room].append(node.viewpoints)
+        rooms = [_room(stored, n, stood, looks) for n in stored.instances("Room")]
         lines = [stored.outline(n) for n in stored.instances("Bound")]
         return cls(
             {node.id: node for node in nodes},
@@ -117,13 +126,17 @@ def _node(stored: StoredMap, node: NamedNode, kind: str) -> Node:
     )
 
 
-def _room(stored: StoredMap, node: NamedNode, stood: Mapping[str | None, int]) -> RoomNode:
+def _room(
+    stored: StoredMap,
+    node: NamedNode,
+    stood: Mapping[str | None, int],
+    looks: Mapping[str | None, list[int]],
+) -> RoomNode:
     name = local_name(node.value)
-    visited = stored.name(node, "afn:visited") == "true"
     return RoomNode(
         name,
         stored.number(node, "afn:x"),
         stored.number(node, "afn:y"),
         stored.belief(node, "room", "roomCategory"),
-        max(stood.get(name, 0), 1) if visited else 0,
+        max(stood.get(name, 0), round(median(looks.get(name, [0])))),
     )
