@@ -13,6 +13,7 @@ from afkb.knowledge.model import (
     Scale,
     Trapezoid,
 )
+from afkb.knowledge.stated_figures import ObjectInRoom, ObjectOnSupport, ObjectWithObject
 from afkb.ontology.bundled import bundled_ontology
 from afkb.ontology.names import AFN, COUNTED, SOMETHING_ELSE, UNKNOWN_ROOM
 
@@ -28,6 +29,9 @@ __all__ = [
     "Dual",
     "EvidenceClass",
     "Feature",
+    "ObjectInRoom",
+    "ObjectOnSupport",
+    "ObjectWithObject",
     "Relationship",
     "RoomCategory",
     "Scale",

@@ -23,6 +23,7 @@ from afkb.knowledge.model import (
     RoomCategory,
     Scale,
 )
+from afkb.knowledge.stated_figures import ObjectInRoom, ObjectOnSupport, ObjectWithObject
 from afkb.ontology.bundled import bundled_ontology
 from afkb.ontology.names import UNKNOWN_ROOM, fragment
 from afkb.ontology.subjects import kinds_of
@@ -116,6 +117,21 @@ class AfNet:
     def co_occurrences(self) -> tuple[CoOccurrence, ...]:
         """Co-occurrence rules and listed pairs, by name."""
         return self._content.co_occurrences
+
+    @property
+    def objects_in_rooms(self) -> tuple[ObjectInRoom, ...]:
+        """How often rooms hold things, as stated, by name."""
+        return self._content.objects_in_rooms
+
+    @property
+    def objects_with_objects(self) -> tuple[ObjectWithObject, ...]:
+        """How often things are in a room with others, as stated, by name."""
+        return self._content.objects_with_objects
+
+    @property
+    def objects_on_supports(self) -> tuple[ObjectOnSupport, ...]:
+        """What things are put on, as stated, by name."""
+        return self._content.objects_on_supports
 
     @property
     def evidence_classes(self) -> Mapping[str, EvidenceClass]:

@@ -62,6 +62,12 @@ def _references(content: Content, facts: Facts) -> Iterator[_Reference]:
         yield pair.iri, "evidence class", pair.predicted_class, content.evidence_classes
         yield pair.iri, "category", pair.evidence_category, content.categories
         yield pair.iri, "category", pair.predicted_category, content.categories
+    for placed in content.objects_in_rooms:
+        yield placed.iri, "category", placed.category, content.categories
+        yield placed.iri, "room", placed.room, content.rooms
+    for figure in (*content.objects_with_objects, *content.objects_on_supports):
+        yield figure.iri, "category", figure.category, content.categories
+        yield figure.iri, "category", figure.given, content.categories
     for evidence in content.evidence_classes.values():
         yield evidence.iri, "feature", evidence.feature, features
     for room in content.rooms.values():

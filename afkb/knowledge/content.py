@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
+from typing import TypeVar
 
 from afkb.knowledge.consistency import check_references
 from afkb.knowledge.facts import Facts, read_facts
@@ -20,12 +21,21 @@ from afkb.knowledge.model import (
     Measure,
     RoomCategory,
     Scale,
+    Statement,
 )
 from afkb.knowledge.relation_reading import (
     read_co_occurrence,
     read_dual,
     read_evidence_class,
     read_rooms,
+)
+from afkb.knowledge.stated_figures import (
+    ObjectInRoom,
+    ObjectOnSupport,
+    ObjectWithObject,
+    read_object_in_room,
+    read_object_on_support,
+    read_object_with_object,
 )
 from afkb.knowledge.thing_reading import (
     read_afbits,
@@ -35,6 +45,8 @@ from afkb.knowledge.thing_reading import (
     read_scale,
 )
 from afkb.ontology.names import fragment
+
+T = TypeVar("T", bound=Statement)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +62,9 @@ class Content:
     co_occurrences: tuple[CoOccurrence, ...]
     evidence_classes: Mapping[str, EvidenceClass]
     rooms: Mapping[str, RoomCategory]
+    objects_in_rooms: tuple[ObjectInRoom, ...]
+    objects_with_objects: tuple[ObjectWithObject, ...]
+    objects_on_supports: tuple[ObjectOnSupport, ...]
     parameters: Mapping[str, float]
     iris: Mapping[str, str]
 
@@ -71,6 +86,9 @@ def read_content(files: Sequence[Path]) -> Content:
         co_occurrences=tuple(pairs[name] for name in sorted(pairs)),
         evidence_classes=read_all(facts, "EvidenceClass", read_evidence_class),
         rooms=read_rooms(facts),
+        objects_in_rooms=_all(facts, "ObjectInRoom", read_object_in_room),
+        objects_with_objects=_all(facts, "ObjectWithObject", read_object_with_object),
+        objects_on_supports=_all(facts, "ObjectOnSupport", read_object_on_support),
         parameters=MappingProxyType(
             {
                 name: facts.number(iri, "value")
@@ -81,6 +99,11 @@ def read_content(files: Sequence[Path]) -> Content:
     )
     check_references(content, facts)
     return content
+
+
+def _all(facts: Facts, class_name: str, read: Callable[[Facts, str], T]) -> tuple[T, ...]:
+    items = read_all(facts, class_name, read)
+    return tuple(items[name] for name in sorted(items))
 
 
 def _by_name(facts: Facts, class_name: str) -> dict[str, str]:
