@@ -147,7 +147,9 @@ class Room:
     `belief` sums to 1 and has `UnknownRoom` among its keys. `visited`: the robot stood in it.
     `connected_to`: ids of rooms that one gets to from it directly, through a doorway or over the
     open border of two parts of an open plan. `evidence`: evidence class to how many things of it
-    were counted; what is 0 was looked for.
+    were counted; what is 0 was looked for. `other_beliefs`: what room classifiers make of it, by
+    their name, each a posterior like `belief`. `second_purpose`: of an open plan that serves two
+    purposes and can't be divided, the category of its other purpose and how likely it has one.
     """
 
     id: str
@@ -159,6 +161,8 @@ class Room:
     visited: bool = True
     connected_to: tuple[str, ...] = ()
     evidence: Mapping[str, int] = field(default_factory=dict)
+    other_beliefs: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    second_purpose: tuple[str, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,14 @@ if TYPE_CHECKING:
     import typer
 
     from afkb.knowledge import AfNet
-    from afkb.plugins.protocols import Detector, Exporter, MapperFactory, Predictor, Source
+    from afkb.plugins.protocols import (
+        Detector,
+        Exporter,
+        MapperFactory,
+        Predictor,
+        RoomClassifier,
+        Source,
+    )
 
 
 @hookspec(firstresult=True)
@@ -33,6 +40,11 @@ def afkb_predictors(knowledge_base: AfNet) -> Iterable[Predictor]:
 @hookspec
 def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
     """Return factories of mappers."""
+
+
+@hookspec
+def afkb_room_classifiers(knowledge_base: AfNet) -> Iterable[RoomClassifier]:
+    """Return classifiers of rooms, whose beliefs stand beside the mapper's."""
 
 
 @hookspec

@@ -16,7 +16,14 @@ import pluggy
 from afkb.errors import PluginError, SourceError
 from afkb.knowledge import AfNet
 from afkb.plugins import PROJECT, hookspecs
-from afkb.plugins.protocols import Detector, Exporter, MapperFactory, Predictor, Source
+from afkb.plugins.protocols import (
+    Detector,
+    Exporter,
+    MapperFactory,
+    Predictor,
+    RoomClassifier,
+    Source,
+)
 
 
 class _Named(Protocol):
@@ -133,6 +140,11 @@ class PluginHost:
         """The factory of the named mapper."""
         factories: list[MapperFactory] = self._collect(self.manager.hook.afkb_mappers)
         return _chosen("mapper", factories, [name])[0]
+
+    def room_classifiers(self, names: Sequence[str] = ()) -> list[RoomClassifier]:
+        """The named classifiers of rooms, or all."""
+        classifiers: list[RoomClassifier] = self._collect(self.manager.hook.afkb_room_classifiers)
+        return _chosen("room classifier", classifiers, names)
 
     def exporters(self, names: Sequence[str] = ()) -> list[Exporter]:
         """The named exporters, or all."""

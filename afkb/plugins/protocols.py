@@ -127,6 +127,26 @@ class MapperFactory(Protocol):
 
 
 @runtime_checkable
+class RoomClassifier(Protocol):
+    """A second opinion on what the rooms of a finished map are for, to stand beside the mapper's.
+
+    The mapper's own `Room.belief` stays what the map goes by.
+    """
+
+    @property
+    def name(self) -> str:
+        """Unique name, under which the map tells its beliefs."""
+        ...
+
+    def beliefs(self, topological_map: TopologicalMap) -> Mapping[str, Mapping[str, float]]:
+        """Room id to P(room category), summing to 1, `UnknownRoom` among the keys.
+
+        A room of which it can't tell anything is left out.
+        """
+        ...
+
+
+@runtime_checkable
 class Exporter(Protocol):
     """Writes a map in some format.
 

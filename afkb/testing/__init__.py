@@ -14,6 +14,7 @@ from afkb.testing.exporters import check_exporter
 from afkb.testing.extensions import check_commands, check_ontology
 from afkb.testing.mappers import check_map, check_mapper_factory
 from afkb.testing.predictors import check_predictor
+from afkb.testing.room_classifiers import check_room_classifier
 from afkb.testing.sample_flow import sample_detections, sample_hypotheses, sample_map
 from afkb.testing.sample_views import sample_view, sample_views
 from afkb.testing.sources import check_source
@@ -27,6 +28,7 @@ __all__ = [
     "check_mapper_factory",
     "check_ontology",
     "check_predictor",
+    "check_room_classifier",
     "check_source",
     "sample_detections",
     "sample_hypotheses",

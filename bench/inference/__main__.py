@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from bench.part_by_part import run_parts
 
-PARTS = ("finding", "speed")
+PARTS = ("homes", "finding", "speed")
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from afkb.errors import BadFrame, SourceError
 from afkb.flow import SkippedFrame, TopologicalMap, View
 from afkb.plugins.host import PluginHost
+from afkb.plugins.protocols import RoomClassifier
 from afkb.store import check_out, write_map
 from afkb.store.made_with import ontology_record
 from afkb_mapping.crew import Crew
@@ -22,6 +23,7 @@ from afkb_mapping.loops.naming import with_loops
 from afkb_mapping.memory.storing import MEMORY_FILE, to_bytes
 from afkb_mapping.memory.visit import Visit
 from afkb_mapping.placing.placed_views import skipped
+from afkb_mapping.rooms.opinions import with_opinions
 from afkb_mapping.run_record import Settings, Stages, run_record
 from afkb_mapping.selection import Selection
 from afkb_mapping.visits.beginning import Beginning, beginning_of, check_continuing
@@ -79,7 +81,7 @@ def make_map(
         if not way.used:
             raise SourceError(selection.nothing_usable(way.skipped))
         with stages.timed("finish"):
-            found = _finished(crew, beginning, way)
+            found = _finished(crew, beginning, way, host.room_classifiers())
         run = run_record(
             settings,
             stages,
@@ -138,9 +140,13 @@ class _Way:
         self.with_depth += view.depth_m is not None
 
 
-def _finished(crew: Crew, beginning: Beginning, way: _Way) -> TopologicalMap:
+def _finished(
+    crew: Crew, beginning: Beginning, way: _Way, classifiers: Sequence[RoomClassifier]
+) -> TopologicalMap:
     visit, placing = beginning.visit, beginning.placing
     found = _closed(crew, visit, crew.finish(visit.T_map_source))
+    with crew.stages.timed("classify rooms"):
+        found = with_opinions(found, classifiers)
     nothing = NO_DEPTH if not way.with_depth else None if found.entities else NOTHING_SEEN
     notes = (n for n in (*visit.notes, *placing.notes, nothing) if n)
     counts = {**found.counts, **placing.counts}

@@ -8,7 +8,7 @@ import pytest
 
 from afkb import testing
 from afkb.plugins.host import PluginHost
-from afkb.plugins.protocols import Detector, Exporter, MapperFactory, Predictor
+from afkb.plugins.protocols import Detector, Exporter, MapperFactory, Predictor, RoomClassifier
 
 HOST = PluginHost()
 HOOK, HANDED = HOST.manager.hook, {"knowledge_base": HOST.knowledge_base}
@@ -39,6 +39,11 @@ def test_predictor(predictor: Predictor) -> None:
 @pytest.mark.parametrize("factory", MAPPERS, ids=name_of)
 def test_mapper_factory(factory: MapperFactory) -> None:
     testing.check_mapper_factory(factory, HOST.knowledge_base)
+
+
+@pytest.mark.parametrize("classifier", HOST.room_classifiers(), ids=name_of)
+def test_room_classifier(classifier: RoomClassifier) -> None:
+    testing.check_room_classifier(classifier, testing.sample_map(), HOST.knowledge_base)
 
 
 @pytest.mark.parametrize("exporter", HOST.exporters(), ids=name_of)

@@ -90,6 +90,10 @@ class BringsAll:
         return [Named("my-mapper")]
 
     @hookimpl
+    def afkb_room_classifiers(self) -> list[Named]:
+        return [Named("my-classifier")]
+
+    @hookimpl
     def afkb_exporters(self) -> list[Named]:
         return [Named("my-exporter")]
 
@@ -111,6 +115,7 @@ def test_what_each_hook_returns_reaches_whoever_asks(
     assert host.open_source("mine:1") == "opened mine:1"
     assert host.predictors(["my-predictor"])[0].name == "my-predictor"
     assert host.mapper_factory("my-mapper").name == "my-mapper"
+    assert host.room_classifiers(["my-classifier"])[0].name == "my-classifier"
     assert host.exporters(["my-exporter"])[0].name == "my-exporter"
     assert BringsAll.extension in extended
 

@@ -1,0 +1,153 @@
+"""What rooms are for, from recordings: every room that the robot stood in, against the truth.
+
+    python -m bench.inference homes [--map MAP --home HOME]... [--homes FOLDER] [--json]
+
+A home is a folder with `bag/` and `truth.json`. Homes without a `--map` are mapped first, which
+takes minutes each; a map that is given is built anew from what it remembers, so that it is today's
+inference that is judged. A room of the map is the one in which most views of a true room were
+taken; where two true rooms share one, each is asked for. The `belief` of the map (affordances
+alone) stands beside those of all room classifiers that are registered.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from afkb.figures import Names
+from afkb.flow import Room, TopologicalMap
+from afkb.ontology.bundled import bundled_ontology
+from afkb.plugins.host import PluginHost
+from afkb_mapping.rooms.opinions import with_opinions
+from bench.detectors.data import Home, data_folder, homes_in
+from bench.inference.rebuilt import mapped, rebuilt
+
+AFFORDANCES = "affordances"
+ALSO_RIGHT = {"ChildsRoom": {"Bedroom"}}
+"""A child's room is a bedroom, by the definition that the ontology states."""
+MS = 1000
+"""Views of the map and of the truth are paired by their stamps, to a millisecond."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Where the homes are, and which maps of them there are already."""
+    parser.add_argument("--homes", type=Path, default=data_folder() / "homes")
+    parser.add_argument("--map", type=Path, action="append", default=[], help="map of a --home")
+    parser.add_argument("--home", type=Path, action="append", default=[])
+    parser.add_argument("--stride", type=int, default=1, help="map every N-th view")
+
+
+def run(args: argparse.Namespace) -> dict[str, Any]:
+    """A row per true room, and how many are right by each classifier."""
+    host = PluginHost()
+    if len(args.map) != len(args.home):
+        raise SystemExit("error: name one --home for each --map")
+    rows: list[dict[str, Any]] = []
+    if args.map:
+        for folder, at in zip(args.map, args.home, strict=True):
+            rows += _judged(rebuilt(folder, host), homes_in(at, host)[0], host)
+    else:
+        for home in homes_in(args.homes, host):
+            rows += _judged(mapped(home.folder / "bag", host, args.stride), home, host)
+    return {"rooms": rows, "summary": summary(rows)}
+
+
+def _judged(found: TopologicalMap, home: Home, host: PluginHost) -> list[dict[str, Any]]:
+    found = with_opinions(found, host.room_classifiers())
+    return room_rows(found, home.truth, home.name)
+
+
+def room_rows(found: TopologicalMap, truth: Mapping[str, Any], home: str) -> list[dict[str, Any]]:
+    """Per true room that the robot stood in: the mapped room of most of its views, and beliefs."""
+    names = Names.load(bundled_ontology().parent / "tables").rooms
+    at = {round(v["stamp"] * MS): v["room"] for v in truth["views"]}
+    stood: dict[str, Counter[str]] = {}
+    for row in found.trajectory:
+        if (name := at.get(round(row[0] * MS))) is not None:
+            stood.setdefault(name, Counter())[_room_at(found.rooms, row[4], row[8])] += 1
+    chosen = {name: rooms.most_common(1)[0][0] for name, rooms in stood.items()}
+    shared = Counter(chosen.values())
+    rooms = {room.id: room for room in found.rooms}
+    return [
+        {
+            "home": home,
+            "room": name,
+            "category": names.find("homes", name.rstrip("0123456789_")),
+            "views": stood[name].total(),
+            "mapped": chosen[name],
+            "shared": shared[chosen[name]],
+            "area_m2": round(rooms[chosen[name]].area, 1),
+            **_told(rooms[chosen[name]], names.find("homes", name.rstrip("0123456789_")) or ""),
+        }
+        for name in sorted(stood)
+    ]
+
+
+def _told(room: Room, category: str) -> dict[str, Any]:
+    right = {category} | ALSO_RIGHT.get(category, set())
+    beliefs = {AFFORDANCES: room.belief, **room.other_beliefs}
+    second = room.second_purpose[0] if room.second_purpose else None
+    return {
+        "second": second,
+        "second_right": second in right,
+        "beliefs": {
+            by: {
+                "best": max(belief, key=lambda r: belief[r]),
+                "p_best": round(max(belief.values()), 3),
+                "p_true": round(sum(belief.get(r, 0.0) for r in right), 3),
+                "right": max(belief, key=lambda r: belief[r]) in right,
+            }
+            for by, belief in beliefs.items()
+        },
+    }
+
+
+def _room_at(rooms: Sequence[Room], x: float, y: float) -> str:
+    import shapely
+
+    point = shapely.Point(x, y)
+    return min(rooms, key=lambda r: shapely.Polygon(r.polygon_xy).buffer(0).distance(point)).id
+
+
+def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Of all true rooms: right ones and mean P(truth), by who tells, and rooms of their own."""
+    told = sorted({by for row in rows for by in row["beliefs"]})
+    return {
+        "rooms": len(rows),
+        "of_their_own": sum(row["shared"] == 1 for row in rows),
+        "right_by_either_purpose": sum(
+            row["beliefs"][AFFORDANCES]["right"] or row["second_right"] for row in rows
+        ),
+        "by": {
+            by: {
+                "right": sum(row["beliefs"][by]["right"] for row in rows if by in row["beliefs"]),
+                "mean_p_true": round(
+                    sum(r["beliefs"][by]["p_true"] for r in rows if by in r["beliefs"]) / len(rows),
+                    3,
+                ),
+            }
+            for by in told
+        },
+    }
+
+
+def table(result: dict[str, Any]) -> Iterator[str]:
+    """A line per true room, then the sums."""
+    for row in result["rooms"]:
+        told = "; ".join(
+            f"{by}: {t['best']} {t['p_best']:.2f}{'' if t['right'] else ' (wrong)'}"
+            for by, t in row["beliefs"].items()
+        )
+        second = f", also {row['second']}" if row["second"] else ""
+        place = f"{row['mapped']} of {row['area_m2']} m2" + (
+            f", shared by {row['shared']}" if row["shared"] > 1 else ""
+        )
+        yield f"{row['home']:12} {row['room']:16} {place}: {told}{second}"
+    sums = result["summary"]
+    yield f"{sums['rooms']} rooms, {sums['of_their_own']} of them with a mapped room of their own"
+    for by, told in sums["by"].items():
+        yield f"{by:24} right {told['right']}, mean P(truth) {told['mean_p_true']}"
+    yield f"{'either purpose':24} right {sums['right_by_either_purpose']}"
