@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -97,6 +97,8 @@ def _print_closures(stored: StoredMap) -> None:
 def rooms(map_folder: MapArgument, as_json: JsonOption = False) -> None:
     """Show the rooms of a map with the posterior over what each is for.
 
+    Beside the map's own belief stand those of other room classifiers, each by its name.
+
     Example: afkb rooms merom --json
     """
     from afkb.store import load
@@ -106,21 +108,28 @@ def rooms(map_folder: MapArgument, as_json: JsonOption = False) -> None:
     if as_json:
         print_json(shapes)
         return
-    rows = []
-    for room in shapes:
-        belief = room["belief"]
-        assert isinstance(belief, dict)
-        best = ", ".join(f"{name} {p:.2f}" for name, p in list(belief.items())[:3])
-        visited = "yes" if room["visited"] else "no"
-        rows.append(
-            (
-                room["id"],
-                f"{room['area']:.1f}",
-                best,
-                f"{room['x']:.2f}",
-                f"{room['y']:.2f}",
-                visited,
-            )
-        )
-    columns = ["room", "area (m²)", "belief", "x", "y", "visited"]
-    print_table(columns, rows, numbers=["area (m²)", "x", "y"])
+    by = list(dict.fromkeys(name for room in shapes for name in _beliefs(room, "other_beliefs")))
+    columns = ["room", "area (m²)", "belief", *by, "x", "y", "visited"]
+    print_table(columns, [_room_row(room, by) for room in shapes], numbers=["area (m²)", "x", "y"])
+
+
+def _room_row(room: dict[str, object], by: list[str]) -> tuple[object, ...]:
+    others = _beliefs(room, "other_beliefs")
+    best = ", ".join(f"{name} {p:.2f}" for name, p in list(_beliefs(room, "belief").items())[:3])
+    if second := _beliefs(room, "second_purpose"):
+        best += f"; also {second['category']} {second['probability']:.2f}"
+    return (
+        room["id"],
+        f"{room['area']:.1f}",
+        best,
+        *(_likeliest(others.get(name, {})) for name in by),
+        f"{room['x']:.2f}",
+        f"{room['y']:.2f}",
+        "yes" if room["visited"] else "no",
+    )
+
+
+def _beliefs(room: dict[str, object], key: str) -> dict[str, Any]:
+    found = room[key] or {}
+    assert isinstance(found, dict)
+    return found

@@ -11,6 +11,7 @@ from afkb import __version__
 from afkb.flow import TopologicalMap
 from afkb.store import things
 from afkb.store.predictions import describe_past
+from afkb.store.rooms import describe_room
 from afkb.store.scribe import Names, Scribe
 from afkb.store.turtle import fingerprint
 from afkb.store.vocabulary import FORMAT_VERSION, SCENES, term
@@ -46,7 +47,7 @@ def scene_triples(
     for doorway in topological_map.doorways:
         things.describe_doorway(scribe, doorway)
     for room in topological_map.rooms:
-        things.describe_room(scribe, room)
+        describe_room(scribe, room)
     for edge in topological_map.edges:
         things.describe_edge(scribe, edge)
     for number, closure in enumerate(topological_map.closures, start=1):

@@ -72,9 +72,32 @@ def rooms_json(stored: StoredMap) -> list[Json]:
             "x": round(stored.number(room, "afn:x"), 3),
             "y": round(stored.number(room, "afn:y"), 3),
             "visited": stored.name(room, "afn:visited") == "true",
+            "second_purpose": _second_purpose(stored, room),
+            "other_beliefs": _other_beliefs(stored, room),
         }
         for room in stored.instances("Room")
     ]
+
+
+def _second_purpose(stored: StoredMap, room: NamedNode) -> Json | None:
+    """Of an open plan that serves two purposes: the other one, and how likely it has one."""
+    name = stored.name(room, "afn:secondPurpose")
+    if name is None:
+        return None
+    probability = stored.number(room, "afn:secondPurposeProbability")
+    return {"category": name, "probability": probability}
+
+
+def _other_beliefs(stored: StoredMap, room: NamedNode) -> dict[str, dict[str, float]]:
+    """By room classifier, what it makes of the room, the likeliest first."""
+    told: dict[str, list[tuple[float, str]]] = {}
+    for node in stored.values(room, "afn:otherRoomBelief"):
+        if isinstance(node, NamedNode):
+            by = (stored.name(node, "prov:wasGeneratedBy") or "").removeprefix("by-")
+            name = stored.name(node, "afn:roomCategory") or ""
+            p = stored.number(node, "afn:probability")
+            told.setdefault(by, []).append((-p, name))
+    return {by: {name: -p for p, name in sorted(belief)} for by, belief in sorted(told.items())}
 
 
 def doorways_json(stored: StoredMap) -> list[Json]:

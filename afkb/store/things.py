@@ -15,7 +15,6 @@ from afkb.flow import (
     LoopProposal,
     NodeKind,
     RobotPlace,
-    Room,
 )
 from afkb.store.evidence import describe_history, describe_sightings
 from afkb.store.predictions import describe_life
@@ -145,25 +144,6 @@ def describe_doorway(scribe: Scribe, doorway: Doorway) -> None:
     scribe.say(node, "afn:connects", *rooms)
     for room in rooms:
         scribe.say(room, "afn:connectedTo", *(other for other in rooms if other != room))
-
-
-def describe_room(scribe: Scribe, room: Room) -> None:
-    """A room with a point inside, its outline, and the posterior over its purpose."""
-    node = scribe.node(room.id)
-    scribe.say(node, "rdf:type", term("afn:Room"), term("bot:Space"))
-    scribe.say(node, "afn:x", float(room.x))
-    scribe.say(node, "afn:y", float(room.y))
-    scribe.say(node, "afn:area", float(room.area))
-    scribe.say(node, "afn:visited", bool(room.visited))
-    scribe.say(node, "afn:connectedTo", *map(scribe.node, room.connected_to))
-    scribe.belief(node, "room", "roomCategory", ranked(room.belief))
-    for name, count in sorted(room.evidence.items()):
-        counted = NamedNode(f"{node.value}-evidence-{name}")
-        scribe.say(node, "afn:counted", counted)
-        scribe.say(counted, "afn:ofEvidenceClass", scribe.individual(name))
-        scribe.say(counted, "rdf:value", int(count))
-    if len(room.polygon_xy) > 1:
-        scribe.geometry(node, polygon_wkt(room.polygon_xy))
 
 
 def describe_edge(scribe: Scribe, edge: Edge) -> None:

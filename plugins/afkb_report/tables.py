@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
-from afkb.flow import Entity, NodeKind, TopologicalMap
+from afkb.flow import Entity, NodeKind, Room, TopologicalMap
 from afkb_report.words import affords, best, role
 
 _KINDS = {
@@ -47,11 +47,26 @@ def counts(m: TopologicalMap) -> str:
 
 def rooms(m: TopologicalMap) -> str:
     """Rooms with their area and posterior."""
+    by = sorted({name for room in m.rooms for name in room.other_beliefs})
     rows = [
-        (escape(room.id), f"{room.area:.1f}", _bars(room.belief), "yes" if room.visited else "no")
+        (
+            escape(room.id),
+            f"{room.area:.1f}",
+            _bars(room.belief) + _second(room),
+            *(_bars(room.other_beliefs.get(name, {}), 2) for name in by),
+            "yes" if room.visited else "no",
+        )
         for room in m.rooms
     ]
-    return table(["room", "area (m²)", "what for", "visited"], rows)
+    return table(["room", "area (m²)", "what for", *map(escape, by), "visited"], rows)
+
+
+def _second(room: Room) -> str:
+    """What an open plan is for besides."""
+    if room.second_purpose is None:
+        return ""
+    name, p = room.second_purpose
+    return f"also for another purpose {p:.2f}: <b>{escape(name)}</b>"
 
 
 def _bars(belief: Mapping[str, float], count: int = 4) -> str:

@@ -43,7 +43,7 @@ class RoomFigures:
     walls: float
 
     def log_likelihood(self, shape: Shape) -> float:
-        """log P(shape | category): doors are Poisson, all else is log-normal."""
+        """Log P(shape | category): doors are Poisson, all else is log-normal."""
         return (
             _log_normal(shape.area_m2, self.area_m2, AREA_SPREAD)
             + _log_normal(shape.elongation, self.elongation, ELONGATION_SPREAD)
@@ -53,7 +53,7 @@ class RoomFigures:
 
 
 class ShapeClassifier:
-    """Tells what rooms are for by doors and walls; a room category without figures is as likely as the mean.
+    """Tells what rooms are for by doors and walls.
 
     The prior is the ontology's: how many rooms of each category a home has.
     """

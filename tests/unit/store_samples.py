@@ -170,7 +170,16 @@ def sample_map() -> TopologicalMap:
         ),
         doorways=(Doorway("d1", 3.5, 1.0, 0.0, 0.9, ("room1", "room2")),),
         rooms=(
-            Room("room1", 1, 1, 8.0, square(1, 1, 1.4), {"Kitchen": 0.7, "UnknownRoom": 0.3}),
+            Room(
+                "room1",
+                1,
+                1,
+                8.0,
+                square(1, 1, 1.4),
+                {"Kitchen": 0.7, "UnknownRoom": 0.3},
+                other_beliefs={"by-colour": {"Bedroom": 0.25, "UnknownRoom": 0.75}},
+                second_purpose=("DiningRoom", 0.9),
+            ),
             Room("room2", 4, 1, 3.2, square(4, 1, 0.9), {"UnknownRoom": 1.0}, visited=False),
         ),
         edges=(

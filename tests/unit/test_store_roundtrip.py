@@ -101,6 +101,13 @@ def test_rooms_are_read_back_with_posterior_and_outline(folder: Path) -> None:
     assert (second["id"], second["visited"]) == ("room2", False)
 
 
+def test_what_others_make_of_a_room_and_its_second_purpose_are_read_back(folder: Path) -> None:
+    first, second = rooms_json(load(folder))
+    assert first["other_beliefs"] == {"by-colour": {"UnknownRoom": 0.75, "Bedroom": 0.25}}
+    assert first["second_purpose"] == {"category": "DiningRoom", "probability": 0.9}
+    assert (second["other_beliefs"], second["second_purpose"]) == ({}, None)
+
+
 def test_info_counts_kinds_closures_and_notes(folder: Path) -> None:
     info = info_json(load(folder))
     assert info["kinds"]["ObservedEntity"] == 3

@@ -10,9 +10,7 @@ from afkb.plugins.protocols import RoomClassifier
 from afkb_mapping.perception import blamed
 
 
-def with_opinions(
-    found: TopologicalMap, classifiers: Sequence[RoomClassifier]
-) -> TopologicalMap:
+def with_opinions(found: TopologicalMap, classifiers: Sequence[RoomClassifier]) -> TopologicalMap:
     """The map with the beliefs of room classifiers, by their names, beside its own.
 
     Raises `PluginError` that names the classifier that fails.
