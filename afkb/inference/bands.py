@@ -16,8 +16,11 @@ TOP_EDGES_M: Array = 0.05 * np.arange(1, 46, dtype=np.float64)
 
 
 def band_of(value: float, edges: Array) -> int:
-    """Index of the band that holds the value, 0 to len(edges)."""
-    return int(np.searchsorted(edges, value, side="right"))
+    """Index of the band that holds the value, 0 to len(edges).
+
+    It is told to 0.1 mm, as a map states it: what the map says falls into the same band.
+    """
+    return int(np.searchsorted(edges, round(value, 4), side="right"))
 
 
 def normal_bands(mean: float, sd: float, edges: Array) -> Array:

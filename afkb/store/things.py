@@ -62,6 +62,7 @@ def _in_room(scribe: Scribe, node: NamedNode, room: str | None) -> None:
 def _box(scribe: Scribe, node: NamedNode, entity: Entity) -> None:
     for axis, size in zip("XYZ", entity.size_xyz, strict=True):
         scribe.say(node, f"afn:size{axis}", float(size))
+    scribe.say(node, "afn:topHeight", float(entity.top_m))
     scribe.say(node, "afn:yaw", float(entity.yaw))
     scribe.say(node, "afn:extentKnown", bool(entity.extent_known))
     if entity.extent_known and max(entity.size_xyz) > 0:
