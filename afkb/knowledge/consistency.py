@@ -65,9 +65,12 @@ def _references(content: Content, facts: Facts) -> Iterator[_Reference]:
     for placed in content.objects_in_rooms:
         yield placed.iri, "category", placed.category, content.categories
         yield placed.iri, "room", placed.room, content.rooms
-    for figure in (*content.objects_with_objects, *content.objects_on_supports):
-        yield figure.iri, "category", figure.category, content.categories
-        yield figure.iri, "category", figure.given, content.categories
+    for together in content.objects_with_objects:
+        yield together.iri, "category", together.category, content.categories
+        yield together.iri, "category", together.given, content.categories
+    for put in content.objects_on_supports:
+        yield put.iri, "category", put.category, content.categories
+        yield put.iri, "category", put.given, content.categories
     for evidence in content.evidence_classes.values():
         yield evidence.iri, "feature", evidence.feature, features
     for room in content.rooms.values():
