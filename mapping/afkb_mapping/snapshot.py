@@ -28,6 +28,7 @@ from afkb_mapping.rooms.evidence import RoomEvidence
 from afkb_mapping.rooms.graph import connections, doorways_of
 from afkb_mapping.rooms.lookup import RoomLookup, room_id
 from afkb_mapping.rooms.rooms import Segmentation, divide_by_purpose, segment_rooms
+from afkb_mapping.rooms.two_purposes import second_purpose
 from afkb_mapping.things.entities import observed_entities, predicted_entities, supports_expected
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.visits.bounds_now import bound_now, doorway_now
@@ -143,12 +144,19 @@ def _rooms(
     beside = connections(segmentation, doorways)
     visited = {p.room for p in places}
     visited |= {lookup.nearest_room(T[0, 3], T[1, 3]) for _, T in content.trajectory}
+    prior = content.network.room_posterior({})
     for shape in segmentation.rooms:
         id_ = room_id(shape.label)
         part = segmentation.labels == shape.label
         at = (id_, *shape.inside_xy, shape.area, shape.polygon_xy)
         seen = id_ in visited, beside.get(id_, ())
-        yield Room(*at, evidence.posterior(part), *seen, evidence=evidence.counts(part))
+        yield Room(
+            *at,
+            evidence.posterior(part),
+            *seen,
+            evidence=evidence.counts(part),
+            second_purpose=second_purpose(part, content.grid, evidence.purpose, prior),
+        )
 
 
 def _with_things(grid: OccupancyGrid, entities: Sequence[Entity]) -> OccupancyGrid:
