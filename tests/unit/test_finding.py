@@ -6,6 +6,7 @@ import pytest
 
 from afkb.errors import KnowledgeError
 from afkb.finding import Node, Region, RoomNode, Surroundings, category_named, regions, somewhere
+from afkb.finding.grasping import Grasp, grasps, is_graspable
 from afkb.finding.holding import Holding, holding, numbers
 from afkb.knowledge import AfNet
 
@@ -118,3 +119,89 @@ def test_a_look_that_overlooks_nothing_leaves_nothing() -> None:
     assert held.overlooked(0.0) == held.another(0.0) == 0.0
     assert held.overlooked(1.0) == pytest.approx(0.8)
     assert 0.0 < held.overlooked(0.1) < 0.1 / 0.3
+
+
+def mug(id_: str = "thing-1", **changes: object) -> Node:
+    facts = {
+        "x": 0.0, "y": 0.0, "z": 0.85, "size": (0.09, 0.085, 0.1), "belief": {"Mug": 1.0},
+        "affords": {"ContainAbility": 0.9}, "supported_by": "surface-1", "existence": 1.0,
+    }  # fmt: skip
+    return node(id_, **(facts | changes))
+
+
+TABLE = node("surface-1", x=0.0, y=0.0, z=0.8)
+
+
+def ways(kb: AfNet, *nodes: Node, walls: tuple = (), of: str = "thing-1") -> dict[str, Grasp]:
+    around = replace(home(TABLE, *nodes, room_1="Kitchen"), walls=walls)
+    found = regions("Mug", around, kb)
+    return {
+        w.grasp: w for w in grasps("Mug", found, around, kb) if w.node.id == of and w.part is None
+    }
+
+
+def test_a_mug_alone_on_a_table_is_taken_from_above_by_what_its_kind_affords(kb) -> None:
+    way = ways(kb, mug())["LargeDiameterGrasp"]
+    assert (way.approach, way.part, way.clear) == ("above", None, 1.0)
+    assert way.width == pytest.approx(0.09) or way.width == pytest.approx(0.085)
+    assert way.probability == pytest.approx(way.is_one * way.fits)
+    afbit = next(a for a in kb.afbits if (a.category, a.feature) == ("Mug", "LargeDiameterGrasp"))
+    assert way.fits == pytest.approx(afbit.strength)
+
+
+def test_a_grasp_that_takes_another_size_does_not_fit(kb) -> None:
+    assert "LargeDiameterGrasp" not in ways(kb, mug(size=(0.4, 0.4, 0.4)))
+    assert "SmallDiameterGrasp" not in ways(kb, mug())
+
+
+def test_fingers_close_where_neighbours_leave_room(kb) -> None:
+    one_side = mug("thing-2", x=0.1, belief={"Jar": 1.0})
+    way = ways(kb, mug(), one_side)["LargeDiameterGrasp"]
+    assert way.clear == 1.0
+    assert way.closing == pytest.approx(1.5708, abs=1e-3)
+    assert way.width == pytest.approx(0.085)
+    four = [
+        mug(f"thing-{i}", x=dx, y=dy, belief={"Jar": 1.0}, z=0.9, size=(0.08, 0.08, 0.2))
+        for i, (dx, dy) in enumerate(((0.09, 0.0), (-0.09, 0.0), (0.0, 0.09), (0.0, -0.09)), 2)
+    ]
+    way = ways(kb, mug(), *four)["LargeDiameterGrasp"]
+    assert way.clear < 0.1
+    assert "no clearance" in way.reason
+    doubtful = [replace(n, existence=0.1) for n in four]
+    assert ways(kb, mug(), *doubtful)["LargeDiameterGrasp"].clear > 0.6
+
+
+def test_a_wide_cup_is_wrapped_round_its_body_and_not_from_top_to_bottom(kb) -> None:
+    way = ways(kb, mug(size=(0.09, 0.09, 0.07), affords={"MediumWrapGrasp": 0.7}))
+    assert (way["MediumWrapGrasp"].approach, way["MediumWrapGrasp"].clear) == ("above", 1.0)
+
+
+def test_under_a_low_board_it_is_taken_from_the_side_that_is_open(kb) -> None:
+    board = node("surface-2", x=0.0, y=0.0, z=0.95)
+    back = (((-1.0, 0.06), (1.0, 0.06)),)
+    shelf = replace(TABLE, size=(1.2, 0.1, 0.02))
+    around = replace(home(shelf, board, mug(), room_1="Kitchen"), walls=back)
+    way = next(w for w in grasps("Mug", regions("Mug", around, kb), around, kb) if w.part is None)
+    assert (way.approach, way.clear) == ("side", 1.0)
+    assert way.bearing == pytest.approx(1.5708, abs=1e-3)
+
+
+def test_what_lies_flat_is_not_gripped_round_its_support(kb) -> None:
+    book = mug(size=(0.25, 0.18, 0.04), belief={"Book": 1.0}, z=0.82)
+    around = home(TABLE, book, room_1="Office")
+    found = grasps("Book", regions("Book", around, kb), around, kb)
+    flat = [w for w in found if w.grasp == "ExtensionTypeGrasp" and w.part is None]
+    assert flat
+    assert all(w.clear == 0.0 and "surface-1" in w.reason for w in flat)
+
+
+def test_handles_are_grasped_that_no_map_measures(kb) -> None:
+    around = home(TABLE, mug(), room_1="Kitchen")
+    handle = [w for w in grasps("Mug", regions("Mug", around, kb), around, kb) if w.part]
+    assert {w.part for w in handle} == {"HandlePart"}
+    assert {w.width for w in handle} == {None}
+
+
+def test_what_no_hand_takes_has_no_grasp(kb) -> None:
+    assert is_graspable("Cup", kb)
+    assert not is_graspable("Bathtub", kb)
