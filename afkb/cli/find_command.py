@@ -32,7 +32,11 @@ def find(
     ] = False,
     extensions: Annotated[
         list[Path] | None,
-        typer.Option("--ontology", metavar="FILE", help="An extension, in place of those the map was made with; repeatable."),
+        typer.Option(
+            "--ontology",
+            metavar="FILE",
+            help="An extension, in place of those the map was made with; repeatable.",
+        ),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
