@@ -21,7 +21,6 @@ from afkb.knowledge.model import (
     Measure,
     RoomCategory,
     Scale,
-    Statement,
 )
 from afkb.knowledge.relation_reading import (
     read_co_occurrence,
@@ -33,6 +32,7 @@ from afkb.knowledge.stated_figures import (
     ObjectInRoom,
     ObjectOnSupport,
     ObjectWithObject,
+    StatedFigure,
     read_object_in_room,
     read_object_on_support,
     read_object_with_object,
@@ -46,7 +46,7 @@ from afkb.knowledge.thing_reading import (
 )
 from afkb.ontology.names import fragment
 
-T = TypeVar("T", bound=Statement)
+T = TypeVar("T", bound=StatedFigure)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,9 +86,9 @@ def read_content(files: Sequence[Path]) -> Content:
         co_occurrences=tuple(pairs[name] for name in sorted(pairs)),
         evidence_classes=read_all(facts, "EvidenceClass", read_evidence_class),
         rooms=read_rooms(facts),
-        objects_in_rooms=_all(facts, "ObjectInRoom", read_object_in_room),
-        objects_with_objects=_all(facts, "ObjectWithObject", read_object_with_object),
-        objects_on_supports=_all(facts, "ObjectOnSupport", read_object_on_support),
+        objects_in_rooms=_best_counted(facts, "ObjectInRoom", read_object_in_room),
+        objects_with_objects=_best_counted(facts, "ObjectWithObject", read_object_with_object),
+        objects_on_supports=_best_counted(facts, "ObjectOnSupport", read_object_on_support),
         parameters=MappingProxyType(
             {
                 name: facts.number(iri, "value")
@@ -101,9 +101,17 @@ def read_content(files: Sequence[Path]) -> Content:
     return content
 
 
-def _all(facts: Facts, class_name: str, read: Callable[[Facts, str], T]) -> tuple[T, ...]:
-    items = read_all(facts, class_name, read)
-    return tuple(items[name] for name in sorted(items))
+def _best_counted(facts: Facts, class_name: str, read: Callable[[Facts, str], T]) -> tuple[T, ...]:
+    """Every figure of a class; of those with one name, the one that rests on the most trials.
+
+    Figures of an extension's homes are counted with those of the ontology, which they replace.
+    """
+    best: dict[str, T] = {}
+    for iri in facts.of_type(class_name):
+        item = read(facts, iri)
+        if item.name not in best or item.trials > best[item.name].trials:
+            best[item.name] = item
+    return tuple(best[name] for name in sorted(best))
 
 
 def _by_name(facts: Facts, class_name: str) -> dict[str, str]:

@@ -47,6 +47,17 @@ def test_own_homes_are_counted_in(extension: Path) -> None:
     assert mine.object_in_room("CactusStand", "Workshop").trials == 1
 
 
+def test_the_network_reads_figures_with_own_homes_counted_in(extension: Path) -> None:
+    kb = AfNet(extensions=[extension])
+    mugs = [f for f in kb.objects_in_rooms if (f.category, f.room) == ("Mug", "Kitchen")]
+    assert len(mugs) == 1
+    expected = kb.figures.object_in_room("Mug", "Kitchen")
+    assert (mugs[0].successes, mugs[0].trials) == (expected.successes, expected.trials)
+    stands = {f.room: f for f in kb.objects_in_rooms if f.category == "CactusStand"}
+    assert stands["Workshop"].trials == 1
+    assert stands["Workshop"].mean_number > stands["Kitchen"].mean_number
+
+
 def test_sparql_answers_with_own_homes_counted_in(extension: Path) -> None:
     before = AfNet().figures.object_in_room("Mug", "Kitchen")
     found = query([], FIGURES, AfNet(extensions=[extension]).files).cells()
