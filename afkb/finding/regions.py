@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from afkb.finding.names import label_of
 from afkb.finding.surroundings import Node, RoomNode, Surroundings
 from afkb.finding.unseen import ELSEWHERE, UNKNOWN, Unseen
+from afkb.finding.untold import share_of
 
 if TYPE_CHECKING:
     from afkb.knowledge import AfNet
@@ -46,7 +47,7 @@ def regions(category: str, around: Surroundings, kb: AfNet) -> list[Region]:
     """
     kinds = [name for name in kb.categories if category in kb.kinds_of(name)]
     label = label_of(category, kb)
-    things = {node.id: _thing(node, kinds, label) for node in around.nodes.values()}
+    things = {node.id: _thing(node, kinds, label, kb) for node in around.nodes.values()}
     nodes: defaultdict[str | None, list[Node]] = defaultdict(list)
     for node in around.nodes.values():
         nodes[node.room if node.room in around.rooms else None].append(node)
@@ -66,9 +67,9 @@ def somewhere(found: Iterable[Region]) -> float:
     return 1.0 - math.prod(1.0 - region.probability for region in found)
 
 
-def _thing(node: Node, kinds: list[str], label: str) -> Region:
+def _thing(node: Node, kinds: list[str], label: str, kb: AfNet) -> Region:
     """The node itself, as such a thing."""
-    share = sum(node.belief.get(kind, 0.0) for kind in kinds)
+    share = share_of(node, kinds, kb)
     how = "seen" if node.seen else "expected"
     where = f", on {node.supported_by}" if node.supported_by else ""
     reason = (

@@ -31,8 +31,12 @@ from afkb_mapping.run_record import Settings
 from bench.detectors.data import NoData, data_folder
 from bench.inference.true_places import ASKED, TruePlaces
 
+HOWS = ("thing", "support", "room")
+LISTED = 0.001
 EDGES = (0.0, 0.01, 0.03, 0.1, 0.2, 0.4, 0.6, 1.0)
 TOP = (1, 3, 5)
+WAYS = {"as it stands": HOWS, "hidden": ("support", "room")}
+"""How it is asked, and over which regions calibration is: of what is hidden, the unseen ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,14 +81,22 @@ def hidden(category: str, around: Surroundings, places: TruePlaces) -> Surroundi
     )
 
 
-def scores(answers: Sequence[Asked]) -> dict[str, Any]:
-    """Ranks of the true places, calibration over all regions, and what is expected in all."""
+def scores(answers: Sequence[Asked], hows: Sequence[str] = HOWS) -> dict[str, Any]:
+    """Ranks of the true places, calibration over regions of a kind, and what is expected in all.
+
+    Calibration is over what `afkb find` lists: regions with a probability of at least `LISTED`.
+    """
     ranks = np.array([rank for a in answers for rank in a.ranks])
     by_size = np.array([rank for a in answers for rank in a.ranks_by_size])
     number = np.array([len(a.found) for a in answers for _ in a.ranks])
     p_true = [_probability(a, rank) for a in answers for rank in a.ranks]
-    p = np.array([region.probability for a in answers for region in a.found])
-    true = np.array([t for a in answers for t in a.true], dtype=float)
+    told = [
+        (region.probability, true)
+        for a in answers
+        for region, true in zip(a.found, a.true, strict=True)
+        if region.how in hows
+    ]
+    p, true = np.array([(p, float(t)) for p, t in told if p >= LISTED]).T
     return {
         "things": len(ranks),
         "regions": round(float(number.mean()), 1),
@@ -92,6 +104,7 @@ def scores(answers: Sequence[Asked]) -> dict[str, Any]:
         "rank, no order": _ranks((number + 1) / 2),
         "rank, largest first": _ranks(by_size),
         "probability of the true place": round(float(np.mean(p_true)), 4),
+        "listed": len(p),
         "expected": round(float(p.sum()), 1),
         "true": int(true.sum()),
         "Brier": round(float(np.mean((p - true) ** 2)), 5),
@@ -156,11 +169,10 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
                     Asked.of(c, hidden(c, places.around, places), places, kb) for c in ASKED
                 ],
             }
-    ways = ("as it stands", "hidden")
-    every = {way: [a for home in asked.values() for a in home[way]] for way in ways}
+    every = {way: [a for home in asked.values() for a in home[way]] for way in WAYS}
     return {
-        "all": {way: scores(answers) for way, answers in every.items()},
-        **{name: {w: scores(home[w]) for w in ways} for name, home in asked.items()},
+        name: {way: scores(home[way], hows) for way, hows in WAYS.items()}
+        for name, home in {"all": every, **asked}.items()
     }
 
 
@@ -187,7 +199,8 @@ def _lines(found: dict[str, Any]) -> Iterator[str]:
     for name in ("rank", "rank, no order", "rank, largest first"):
         yield f"  {name}: " + ", ".join(f"{k} {v:g}" for k, v in found[name].items())
     yield f"  p of the true place {found['probability of the true place']:.3f}"
-    yield f"  regions with one: expected {found['expected']}, true {found['true']}"
+    listed = f"of {found['listed']} listed regions with one"
+    yield f"  {listed}: expected {found['expected']}, true {found['true']}"
     yield f"  Brier {found['Brier']:.4f}; {found['Brier, always the share']:.4f} always the share"
     yield f"  calibration error {found['calibration error']:.4f}"
     yield f"  somewhere: told {found['somewhere']:.2f}, true {found['somewhere, true']:.2f}"

@@ -8,6 +8,7 @@ from afkb.errors import KnowledgeError
 from afkb.finding import Node, Region, RoomNode, Surroundings, category_named, regions, somewhere
 from afkb.finding.grasping import Grasp, grasps, is_graspable
 from afkb.finding.holding import Holding, holding, numbers
+from afkb.finding.untold import share_of
 from afkb.knowledge import AfNet
 
 
@@ -19,7 +20,7 @@ def kb() -> AfNet:
 def node(id_: str, room: str = "room-1", **changes: object) -> Node:
     facts = {
         "kind": "ObservedEntity", "x": 1.0, "y": 2.0, "z": 0.7, "existence": 0.9,
-        "belief": {"DiningTable": 0.8}, "room": room, "affords": {"SupportAbility": 0.95},
+        "belief": {"DiningTable": 1.0}, "room": room, "affords": {"SupportAbility": 0.95},
         "size": (1.2, 0.8, 0.02), "viewpoints": 3,
     }  # fmt: skip
     return Node(id_, **(facts | changes))
@@ -57,7 +58,18 @@ def test_what_was_seen_may_be_one_by_its_existence_and_its_kinds(kb) -> None:
     cup = node("thing-1", affords={}, belief={"Mug": 0.3, "PaperCup": 0.2, "Jar": 0.5})
     found = regions("Cup", home(cup, room_1="Kitchen"), kb)
     assert at(found, "thing-1", "thing") == pytest.approx(0.9 * 0.5)
+    assert at(regions("Table", home(cup, room_1="Kitchen"), kb), "thing-1", "thing") == 0.0
     assert [r.seen for r in found if r.node == "thing-1"] == [True]
+
+
+def test_what_a_map_leaves_untold_goes_to_what_the_thing_looks_like(kb) -> None:
+    facts = {"size": (0.09, 0.09, 0.1), "affords": {"ContainAbility": 0.95}, "z": 0.85}
+    untold = node("thing-1", belief={"Jar": 0.5, "Can": 0.2}, **facts)
+    around = home(untold, room_1="Kitchen")
+    mug, bed = (at(regions(c, around, kb), "thing-1", "thing") for c in ("Mug", "Bed"))
+    assert 0.2 * 0.9 >= mug > 10 * bed
+    whole = sum(share_of(untold, [name], kb) for name in kb.categories)
+    assert 0.7 < whole <= 1.0 + 1e-9
 
 
 def test_probabilities_add_up_over_the_regions_of_a_room(kb) -> None:
@@ -80,7 +92,7 @@ def test_where_one_has_looked_often_it_is_less_likely(kb) -> None:
 
 
 def test_it_is_where_such_things_are_put_and_in_rooms_that_hold_them(kb) -> None:
-    table, bed = node("surface-1"), node("surface-2", belief={"Bed": 0.9})
+    table, bed = node("surface-1"), node("surface-2", belief={"Bed": 1.0})
     found = regions("Mug", home(table, bed, room_1="LivingRoom"), kb)
     assert at(found, "surface-1", "support") > 3 * at(found, "surface-2", "support") > 0
     there = home(
