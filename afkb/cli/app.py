@@ -65,12 +65,19 @@ def _version(asked: bool) -> None:
 
 
 def _add_scene_commands(cli: typer.Typer) -> None:
-    from afkb.cli import find_command, plugin_commands, query_command, scene_commands
+    from afkb.cli import (
+        find_command,
+        plugin_commands,
+        query_command,
+        scene_commands,
+        why_command,
+    )
 
     cli.command()(scene_commands.info)
     cli.command()(scene_commands.rooms)
     cli.command()(query_command.query)
     cli.command()(find_command.find)
+    cli.command()(why_command.why)
     cli.command()(plugin_commands.plugins)
     if importlib.util.find_spec(_ONTOLOGY_COMMANDS):
         cli.add_typer(importlib.import_module(_ONTOLOGY_COMMANDS).app, name="ontology")

@@ -1,0 +1,165 @@
+"""Why a thing, a prediction or a room is held for what it is: all its chains together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pyoxigraph import NamedNode
+
+from afkb.explaining.explanation import Explanation, Ground
+from afkb.explaining.life import life_of
+from afkb.explaining.purpose import counted_for, purpose
+from afkb.explaining.reading import StoredThing, counts_of, sightings_of
+from afkb.explaining.recognition import recognition
+from afkb.explaining.source import Source, of_statement
+from afkb.inference import Network
+from afkb.knowledge import AfNet
+from afkb.knowledge.model import CoOccurrence, Dual
+from afkb.store import StoredMap
+from afkb.store.vocabulary import local_name
+
+FLOOR = {"Floor": 1.0}
+ROUNDING = 1e-6
+"""A recomputed probability that is further off than what the map rounds to is told of."""
+
+
+def explain_thing(stored: StoredMap, node: NamedNode, network: Network) -> Explanation:
+    """A thing that was seen: its sightings, its existence, and what it is."""
+    thing = StoredThing.read(stored, node)
+    facts = {
+        "size": " × ".join(f"{v:.2f}" for v in thing.size_xyz) + " m",
+        "its top": f"{thing.top_m:.2f} m above the floor",
+        "affords": _probabilities(thing.affordances),
+    }
+    if not thing.whole:
+        facts["extent"] = "not known: at least as long and wide as it looks"
+    told = f"seen, {_where(thing)}; held for {_probabilities(thing.categories, 3)}"
+    explanation = Explanation(
+        id=thing.id,
+        kind="ObservedEntity",
+        told=told,
+        facts=facts,
+        sightings=tuple(sightings_of(stored, node)),
+        views=int(stored.number(node, "afn:observations")),
+        life=life_of(stored, node),
+        grounds=tuple(_predicted_before(stored, node, network.knowledge_base)),
+    )
+    if dict(thing.categories) == FLOOR:
+        note = "the lowest level surface, on which everything stands: no network infers that"
+        return replace(explanation, notes=(note,))
+    chain = recognition(network, thing)
+    return replace(explanation, about="what it is", chain=chain)
+
+
+def explain_prediction(
+    stored: StoredMap, node: NamedNode, kind: str, network: Network
+) -> Explanation:
+    """A thing that is, or was, expected: what it follows from, by which axiom, and its life."""
+    past = kind == "PastPrediction"
+    thing = StoredThing.read(stored, node)
+    state = stored.name(node, "afn:predictionState") or "Predicted"
+    relation = stored.name(node, "afn:regionRelation")
+    facts = {"state": state}
+    if relation:
+        facts["where"] = f"{relation} {' and '.join(stored.names(node, 'afn:predictedFrom'))}"
+    life = life_of(stored, node, "afn:probability" if past else "afn:existence")
+    what = stored.names(node, "afn:expectedAffordance") if past else list(thing.affordances)
+    told = f"expected, not seen: {' and '.join(what)}; state: {state}"
+    explanation = Explanation(
+        id=local_name(node.value),
+        kind=kind,
+        told=told,
+        facts=facts,
+        views=int(stored.number(node, "afn:observations")),
+        life=life,
+        grounds=tuple(_follows_from(stored, node, network.knowledge_base)),
+    )
+    if past:
+        return explanation
+    return replace(explanation, about="what it would be", chain=recognition(network, thing))
+
+
+def explain_room(stored: StoredMap, node: NamedNode, network: Network) -> Explanation:
+    """A room: what was counted in it, what counts, and what it is for."""
+    id_ = local_name(node.value)
+    things = [t for t in _observed(stored) if t.room == id_]
+    counts, notes = counts_of(stored, node), []
+    if not counts and things:
+        notes.append("the map does not state what was counted; counted again, from its things")
+        counts = _counted_again(network, things)
+    belief = stored.belief(node, "room", "roomCategory")
+    counting = [
+        Ground(t.id, f"counts as {' and '.join(classes)}")
+        for t in things
+        if (classes := counted_for(network, t))
+    ]
+    visited = "stood in it" if stored.name(node, "afn:visited") == "true" else "looked into it"
+    return Explanation(
+        id=id_,
+        kind="Room",
+        told=f"a room, held for {_probabilities(belief, 3)}",
+        facts={"area": f"{stored.number(node, 'afn:area'):.1f} m²", "the robot": visited},
+        grounds=tuple(counting),
+        about="what it is for",
+        chain=purpose(network, counts, belief, things),
+        notes=tuple(notes),
+    )
+
+
+def _observed(stored: StoredMap) -> list[StoredThing]:
+    found = [StoredThing.read(stored, n) for n in stored.instances("ObservedEntity")]
+    return [t for t in found if dict(t.categories) != FLOOR]
+
+
+def _counted_again(network: Network, things: Sequence[StoredThing]) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for thing in things:
+        for name in counted_for(network, thing):
+            found[name] = found.get(name, 0) + 1
+    return found
+
+
+def _where(thing: StoredThing) -> str:
+    on = f"on {thing.supported_by}" if thing.supported_by else "on nothing that was seen"
+    return f"{on}, in {thing.room or 'no room'}"
+
+
+def _probabilities(found: object, count: int = 8) -> str:
+    assert isinstance(found, dict)
+    ranked = sorted(found.items(), key=lambda item: (-item[1], item[0]))[:count]
+    return ", ".join(f"{name} {p:.2f}" for name, p in ranked)
+
+
+def _predicted_before(stored: StoredMap, node: NamedNode, kb: AfNet) -> list[Ground]:
+    """Of a thing whose prediction came true: what had predicted it."""
+    first = stored.name(node, "afn:predictedFirst")
+    if first is None:
+        return []
+    grounds = _follows_from(stored, node, kb)
+    return [Ground(g.id, f"predicted it before it was seen: {g.how}", g.source) for g in grounds]
+
+
+def _follows_from(stored: StoredMap, node: NamedNode, kb: AfNet) -> list[Ground]:
+    """The axioms of a prediction, with their statements, and the nodes that it follows from."""
+    anchors = stored.names(node, "afn:predictedFrom")
+    derived = stored.names(node, "prov:wasDerivedFrom")
+    found = [_axiom(kb, name) for name in derived if name not in anchors]
+    return found + [Ground(name, "was seen") for name in anchors]
+
+
+def _axiom(kb: AfNet, name: str) -> Ground:
+    statements: dict[str, Dual | CoOccurrence] = {d.name: d for d in kb.duals}
+    statements |= {c.name: c for c in kb.co_occurrences}
+    stated = statements.get(name)
+    if stated is None:
+        return Ground(name, "the rule; no ontology in use states it")
+    return Ground(name, f"the rule: {stated.label}", _source(stated))
+
+
+def _source(stated: Dual | CoOccurrence) -> Source:
+    if isinstance(stated, Dual):
+        says = f"{stated.evidence} predicts {stated.predicted} {stated.relation} it"
+    else:
+        says = f"{stated.evidence_class} predicts {stated.predicted_class} near it"
+    return of_statement(stated, f"{says} with strength {stated.strength:g}")
