@@ -8,6 +8,7 @@ from afkb.cli.building_command import build
 from afkb.cli.checking_command import check
 from afkb.cli.counting_command import count
 from afkb.cli.gathering_command import gather
+from afkb.cli.learning_commands import homes, learn
 from afkb.cli.network_command import network
 from afkb.cli.reference_command import reference
 from afkb.cli.showing_command import show
@@ -15,5 +16,5 @@ from afkb.cli.starter_command import new
 from afkb.cli.status_command import status
 
 app = typer.Typer(no_args_is_help=True, help="Build, check and show the ontology.")
-for command in (show, reference, status, check, new, gather, count, build, network):
+for command in (show, reference, status, check, new, gather, count, homes, learn, build, network):
     app.command()(command)

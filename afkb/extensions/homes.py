@@ -17,8 +17,9 @@ from afkb.ontology.schema import Table
 
 
 def home_rows(sheet: Sheet, terms: Terms, tables: Path) -> Iterator[tuple[Table, Row]]:
-    """A figure for each category met in a room of the homes, with those that were counted before.
+    """A figure for each category and room met in the homes, with those that were counted before.
 
+    That a room of theirs lacks what another has counts, too.
     They are the extension's own: the ontology's figure of the same thing and room stays beside.
     `tables`: the folder of the ontology's tables, which knows what people call things.
     """
@@ -28,7 +29,7 @@ def home_rows(sheet: Sheet, terms: Terms, tables: Path) -> Iterator[tuple[Table,
     bundled = tables.parent / "counts"
     pooled = Figures.load(bundled).plus(homes) if bundled.is_dir() else homes
     brought = " + ".join(path.name for path in sheet.homes)
-    for place in homes.in_rooms():
+    for place in homes.in_rooms(least=0):
         figure = pooled.object_in_room(place.category, place.room)
         number = pooled.number_in_room(place.category, place.room)
         row = in_room_row(replace(place, figure=figure, number=number))

@@ -72,7 +72,7 @@ def test_homes_that_change_are_counted_anew(extension: Path) -> None:
     first = AfNet(extensions=[extension])
     assert len(query([], FIGURES, first.files).cells()) == 4
     (extension.parent / "homes.csv").write_text(HOMES + "my-flat,r3,kitchen,teapot:1\n")
-    assert len(query([], FIGURES, AfNet(extensions=[extension]).files).cells()) == 5
+    assert len(query([], FIGURES, AfNet(extensions=[extension]).files).cells()) == 6
 
 
 def test_a_table_of_homes_that_is_given_twice_counts_once(extension: Path) -> None:
