@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from afkb.errors import KnowledgeError
+from afkb.finding.stated import rates_by_room
 
 if TYPE_CHECKING:
     from afkb.knowledge import AfNet
@@ -39,7 +39,7 @@ def holding(category: str, kb: AfNet) -> Mapping[str, Holding]:
     the counts tell by how much kinds of rooms differ, and the ontology's expected number in a home
     how many there are in all.
     """
-    probability, number = _counted(category, kb)
+    probability, number = rates_by_room(category, kb)
     home = sum(kb.rooms[room].expected_number * mean for room, mean in number.items())
     scale = kb.categories[category].expected_number / home if home > 0 else 0.0
     return {
@@ -66,28 +66,3 @@ def any_of(kinds: Iterable[str], kb: AfNet) -> dict[str, Holding]:
 def numbers(category: str, kb: AfNet) -> dict[str, float]:
     """How many of that category a room holds on average, by room category."""
     return {room: h.probability * (1.0 + h.more) for room, h in holding(category, kb).items()}
-
-
-def _counted(category: str, kb: AfNet) -> tuple[dict[str, float], dict[str, float]]:
-    """P(any) and mean number by room category, as counted in homes.
-
-    Where nobody has a name for the category, those of the nearest broader one that has; where none
-    has, alike in every room. Where no room of a purpose was counted, the mean of all rooms.
-    """
-    counted = set(kb.figures.rooms())
-    rooms = {name: room.expected_number for name, room in kb.rooms.items()}
-    for name in kb.kinds_of(category):
-        try:
-            anywhere = kb.figures.base_rate(name)
-            p = {r: kb.figures.object_in_room(name, r).p for r in rooms if r in counted}
-            n = {r: kb.figures.number_in_room(name, r).mean for r in p}
-        except KnowledgeError:
-            continue
-        weight = sum(rooms[r] for r in n)
-        mean = sum(rooms[r] * n[r] for r in n) / weight if weight > 0 else anywhere
-        return (
-            {r: p.get(r, anywhere) for r in rooms},
-            {r: max(n.get(r, mean), p.get(r, anywhere)) for r in rooms},
-        )
-    number = kb.categories[category].expected_number / max(sum(rooms.values()), 1.0)
-    return dict.fromkeys(rooms, -math.expm1(-number)), dict.fromkeys(rooms, number)

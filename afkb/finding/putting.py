@@ -9,8 +9,8 @@ from functools import lru_cache
 from statistics import fmean
 from typing import TYPE_CHECKING
 
-from afkb.errors import KnowledgeError
 from afkb.finding.holding import numbers
+from afkb.finding.stated import supports_of
 
 if TYPE_CHECKING:
     from afkb.finding.surroundings import Node
@@ -77,32 +77,19 @@ def putting(category: str, kb: AfNet) -> Putting | None:
 
 def _shares(category: str, kb: AfNet) -> dict[str, float]:
     for name in kb.kinds_of(category):
-        if name in _told(kb):
-            return _told(kb)[name]
+        if name in supports_of(kb):
+            return dict(supports_of(kb)[name])
     for group in kb.kinds_of(category)[1:]:
-        alike = [shares for name, shares in _told(kb).items() if group in kb.kinds_of(name)]
+        alike = [shares for name, shares in supports_of(kb).items() if group in kb.kinds_of(name)]
         if alike:
             return _mean(alike)
     scale = kb.categories[category].scale
-    return _mean([s for name, s in _told(kb).items() if kb.categories[name].scale == scale])
+    return _mean([s for name, s in supports_of(kb).items() if kb.categories[name].scale == scale])
 
 
-def _mean(several: list[dict[str, float]]) -> dict[str, float]:
+def _mean(several: list[Mapping[str, float]]) -> dict[str, float]:
     total: defaultdict[str, float] = defaultdict(float)
     for shares in several:
         for support, p in shares.items():
             total[support] += p / len(several)
     return dict(total)
-
-
-@lru_cache(maxsize=8)
-def _told(kb: AfNet) -> dict[str, dict[str, float]]:
-    """P(on a support of a category), of every category of which that was counted."""
-    told = {}
-    for name in kb.categories:
-        try:
-            figures = kb.figures.support_of(name)
-        except KnowledgeError:
-            continue
-        told[name] = {s: figure.p for s, figure in figures.items() if s in kb.categories}
-    return told

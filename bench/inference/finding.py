@@ -29,6 +29,7 @@ from afkb.plugins.host import PluginHost
 from afkb_mapping.run import make_map
 from afkb_mapping.run_record import Settings
 from bench.detectors.data import NoData, data_folder
+from bench.inference.grasp_truth import compared
 from bench.inference.true_places import ASKED, TruePlaces
 
 HOWS = ("thing", "support", "room")
@@ -158,11 +159,13 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
         raise NoData("no homes with truth.json; name some, or set AFKB_DATA")
     host, kb = PluginHost(), PluginHost().knowledge_base
     asked: dict[str, dict[str, list[Asked]]] = {}
+    seen: list[TruePlaces] = []
     with tempfile.TemporaryDirectory() as scratch:
         for i, home in enumerate(homes):
             told = (args.map or [])[i : i + 1]
             folder = told[0] if told else _mapped(host, home, Path(scratch) / home.name)
             places = TruePlaces.of(home, folder)
+            seen.append(places)
             asked[home.name] = {
                 "as it stands": [Asked.of(c, places.around, places, kb) for c in ASKED],
                 "hidden": [
@@ -170,10 +173,11 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
                 ],
             }
     every = {way: [a for home in asked.values() for a in home[way]] for way in WAYS}
-    return {
+    found: dict[str, Any] = {
         name: {way: scores(home[way], hows) for way, hows in WAYS.items()}
         for name, home in {"all": every, **asked}.items()
     }
+    return {**found, "grasps": compared(seen, kb)}
 
 
 def _mapped(host: PluginHost, home: Path, out: Path) -> Path:
@@ -184,6 +188,8 @@ def _mapped(host: PluginHost, home: Path, out: Path) -> Path:
 def table(result: dict[str, Any]) -> Iterator[str]:
     """Some lines per home and way of asking, then the bins of all."""
     for home, ways in result.items():
+        if home == "grasps":
+            continue
         for way, found in ways.items():
             yield f"{home}, {way}: {found['things']} things among {found['regions']} regions"
             yield from _lines(found)
@@ -193,6 +199,8 @@ def table(result: dict[str, Any]) -> Iterator[str]:
                 f"  {way}, {b['from']:g} to {b['to']:g}: {b['regions']} regions, "
                 f"told {b['told']:.3f}, true {b['true']:.3f}"
             )
+    for name, value in result["grasps"].items():
+        yield f"grasps, {name}: {value}"
 
 
 def _lines(found: dict[str, Any]) -> Iterator[str]:

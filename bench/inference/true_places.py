@@ -16,6 +16,7 @@ import numpy as np
 from afkb.finding import Node, Surroundings
 from afkb.store import load
 from afkb.store.vocabulary import local_name
+from afkb_mapping.geometry import yaw_of
 from bench.mapping.true_views import T_map_world
 
 Thing = Mapping[str, Any]
@@ -38,10 +39,11 @@ HEIGHT_WITHIN_M = 0.08
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TruePlaces:
-    """A map with the small things of its home; `outlines`: (N, 1, 2) of rooms by id, m."""
+    """A map with its home's small things, and all others; `outlines`: (N, 1, 2) of rooms, m."""
 
     around: Surroundings
     small: tuple[Thing, ...]
+    large: tuple[Thing, ...]
     outlines: Mapping[str, Any]
 
     @classmethod
@@ -53,6 +55,7 @@ class TruePlaces:
         return cls(
             Surroundings.of(stored),
             tuple(_moved(thing, T) for thing in truth["things"] if thing["on"]),
+            tuple(_moved(thing, T) for thing in truth["things"] if not thing["on"]),
             {k: np.array(xy, np.float32)[:, None] for k, xy in rooms.items() if xy},
         )
 
@@ -88,10 +91,14 @@ class TruePlaces:
 
 
 def _moved(thing: Thing, T: Any) -> Thing:
-    """A thing of the truth with its middle in the map's frame, and half of its longer side."""
+    """A thing of the truth in the map's frame: its middle, its box, half of its longer side."""
     low, high = np.array(thing["min"]), np.array(thing["max"])
     middle = T @ [*(low[:2] + high[:2]) / 2, 0.0, 1.0]
     return {
+        "name": thing["name"],
+        "on": thing["on"],
+        "extent": tuple((high - low)[:2].tolist()),
+        "yaw": yaw_of(T),
         "word": re.sub(r"^\d+(-\w)?_", "", thing["category"]),
         "xy": (float(middle[0]), float(middle[1])),
         "radius": float((high - low)[:2].max()) / 2,

@@ -217,3 +217,46 @@ def test_handles_are_grasped_that_no_map_measures(kb) -> None:
 def test_what_no_hand_takes_has_no_grasp(kb) -> None:
     assert is_graspable("Cup", kb)
     assert not is_graspable("Bathtub", kb)
+
+
+class Changed(AfNet):
+    """The bundled ontology with one figure's probability scaled; 0 deletes it."""
+
+    def __init__(self, name: str, factor: float) -> None:
+        super().__init__()
+        self.name, self.factor = name, factor
+
+    def _with(self, figures):
+        kept = [f for f in figures if f.name != self.name]
+        (figure,) = [f for f in figures if f.name == self.name] or [None]
+        if figure is not None and self.factor > 0:
+            kept.append(replace(figure, probability=figure.probability * self.factor))
+        return tuple(kept)
+
+    @property
+    def objects_in_rooms(self):
+        return self._with(super().objects_in_rooms)
+
+    @property
+    def objects_on_supports(self):
+        return self._with(super().objects_on_supports)
+
+
+@pytest.mark.parametrize("factor", [0.5, 0.0])
+@pytest.mark.parametrize(
+    ("figure", "at_node"), [("DiningTable.Mug.Support", "surface-1"), ("Mug.Kitchen.InRoom", None)]
+)
+def test_less_of_a_statement_moves_what_it_speaks_of_and_nothing_else(
+    kb, figure, at_node, factor
+) -> None:
+    sofa = node("surface-2", "room-2", belief={"Couch": 1.0})
+    around = home(node("surface-1"), sofa, room_1="Kitchen", room_2="LivingRoom")
+
+    def told(category: str, base: AfNet) -> tuple[float, dict]:
+        found = regions(category, around, base)
+        there = [r for r in found if r.room == "room-1" and at_node in (None, r.node)]
+        return somewhere(there), {(r.node, r.how): r.probability for r in found}
+
+    changed = Changed(figure, factor)
+    assert told("Mug", changed)[0] < 0.95 * told("Mug", kb)[0]
+    assert told("Bowl", changed)[1] == told("Bowl", kb)[1]
