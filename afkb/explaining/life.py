@@ -30,10 +30,15 @@ WORDS = {
 _BEGIN = (ChangeKind.SIGHTED, ChangeKind.PREDICTED, ChangeKind.PREDICTED_AGAIN)
 
 
-def life_of(stored: StoredMap, node: NamedNode, predicate: str = "afn:existence") -> Life:
-    """The life of a thing or of a prediction; a kept step tells where the kept ones begin."""
+def life_of(stored: StoredMap, node: NamedNode, past: bool = False) -> Life:
+    """The life of a thing or of a prediction; a kept step tells where the kept ones begin.
+
+    What is `past` has no existence any more: the map states what its last step led to.
+    """
     changes, rule = changes_of(stored, node), rule_of(stored)
-    known = stored.number(node, predicate, 1.0)
+    known = stored.number(node, "afn:existence", 1.0)
+    if past:
+        known = changes[-1].after if changes else 0.0
     recomputed = folded(changes, rule)
     what_if = tuple(_otherwise(changes, rule))
     return Life(known, recomputed, tuple(changes), what_if)

@@ -57,27 +57,37 @@ def explain_prediction(
 ) -> Explanation:
     """A thing that is, or was, expected: what it follows from, by which axiom, and its life."""
     past = kind == "PastPrediction"
-    thing = StoredThing.read(stored, node)
     state = stored.name(node, "afn:predictionState") or "Predicted"
-    relation = stored.name(node, "afn:regionRelation")
+    relation = stored.name(node, "afn:regionRelation") or ""
+    expects = stored.names(node, "afn:expectedAffordance" if past else "afn:affords")
+    seen_as = stored.name(node, "afn:confirmedBy")
     facts = {"state": state}
     if relation:
         facts["where"] = f"{relation} {' and '.join(stored.names(node, 'afn:predictedFrom'))}"
-    life = life_of(stored, node, "afn:probability" if past else "afn:existence")
-    what = stored.names(node, "afn:expectedAffordance") if past else list(thing.affordances)
-    told = f"expected, not seen: {' and '.join(what)}; state: {state}"
+    if seen_as:
+        facts["seen as"] = seen_as
+    if past:
+        facts["before its end"] = f"p = {stored.number(node, 'afn:probability'):.2f}"
     explanation = Explanation(
         id=local_name(node.value),
         kind=kind,
-        told=told,
+        told=f"expected, {'and seen' if seen_as else 'not seen'}: {' and '.join(expects)}",
         facts=facts,
         views=int(stored.number(node, "afn:observations")),
-        life=life,
+        life=life_of(stored, node, past),
         grounds=tuple(_follows_from(stored, node, network.knowledge_base)),
     )
     if past:
         return explanation
+    thing = _expected(StoredThing.read(stored, node), relation)
     return replace(explanation, about="what it would be", chain=recognition(network, thing))
+
+
+def _expected(thing: StoredThing, relation: str) -> StoredThing:
+    """What the network takes in of a prediction: of what is below or on things no extent."""
+    width, depth, _ = thing.size_xyz
+    size = (width, depth, 0.0) if relation == "near" else (0.0, 0.0, 0.0)
+    return replace(thing, size_xyz=size, whole=True)
 
 
 def explain_room(stored: StoredMap, node: NamedNode, network: Network) -> Explanation:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from afkb.flow import Change, ChangeKind, Entity, NodeKind, Sighting
+import numpy as np
+
+from afkb.flow import Change, ChangeKind, Entity, NodeKind, Region, Relation, Sighting
 from afkb.inference import Network, network_of
 from afkb.inference.existence import folded
 from afkb.knowledge import AfNet
@@ -27,6 +29,8 @@ def believed(network: Network, thing: Entity) -> Entity:
     """The thing as the network recognises it."""
     known = network.known(thing.affordances)
     at = (known, thing.size_xyz, thing.top_m, thing.extent_known)
+    if thing.region is not None:
+        at = (known, (*thing.size_xyz[:2], 0.0), thing.top_m, True)
     return replace(thing, category_belief=network.category_posterior(*at))
 
 
@@ -52,6 +56,7 @@ def explained_map(folder: Path, kb: AfNet) -> StoredMap:
         axioms=(kb.iri("LargerSupportNearSeat"),),
         history=(Change(ChangeKind.PREDICTED, 0.65, None, 0.65, 1.5, 0, ("n2",)),),
         extent_known=False,
+        region=Region(Relation.NEAR, np.array([[2.0, 1.0, 1.0]]), 0.25, (0.62, 0.84)),
     )
     counts = {"TableHeightSupport": 1, "SmallContainer": 1, "BedSupport": 0}
     sample = sample_map()
