@@ -7,7 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
 
+import numpy as np
+
 from afkb.errors import EvidenceError
+from afkb.inference.bands import Array
+from afkb.inference.contents import ContentsNetwork
+from afkb.inference.holdings import Stated
 from afkb.inference.objects import ObjectNetwork
 from afkb.inference.relations import RelationshipNetwork
 from afkb.inference.rooms import RoomNetwork
@@ -137,13 +142,60 @@ class Network:
         looked = set(features)
         return tuple(name for name in self.rooms.counts if classes[name].feature in looked)
 
-    def room_posterior(self, counts: Mapping[str, int]) -> dict[str, float]:
+    def room_posterior(
+        self, counts: Mapping[str, int], categories: Mapping[str, int] | None = None
+    ) -> dict[str, float]:
         """P(room category | counts of evidence classes), summing to 1 (paper §II.F).
 
         Classes absent from `counts` are unobserved; 0 says that they were looked for in vain.
-        `UnknownRoom` is among the keys. Raises `EvidenceError` for unknown names and bad counts.
+        `categories`: how many things of each object category were recognised; of those not named
+        nothing is said, 0 says that they were looked for in vain. A thing that counts here should
+        not be counted again by its class. `UnknownRoom` is among the keys.
+        Raises `EvidenceError` for unknown names, bad numbers, and what no room can hold.
         """
-        return self.rooms.posterior(counts)
+        if categories is None:
+            return self.rooms.posterior(counts)
+        joint = self.rooms.likelihood(counts) * self.rooms.joint_prior
+        weights = (joint * self._found(categories)).sum(axis=1)
+        total = float(weights.sum())
+        if not total > 0:
+            raise EvidenceError(f"no room can hold {dict(counts)} with {dict(categories)}")
+        return dict(zip(self.rooms.rooms, (weights / total).tolist(), strict=True))
+
+    def contents(
+        self, room: Mapping[str, float], seen: Mapping[str, int] | None = None
+    ) -> dict[str, float]:
+        """P(a room holds one more thing of a category, seen or not), for every object category.
+
+        `room`: belief over room categories, all evidence in it. `seen`: recognised things by
+        category: what is met together with them is likelier, and how much was found tells how much
+        there is to find. Raises `EvidenceError` for unknown names and bad numbers.
+        """
+        network = self.contents_network
+        belief = np.array([room.get(name, 0.0) for name in network.rooms])
+        if set(room) - set(network.rooms) or not belief.sum() > 0:
+            raise EvidenceError(f"{dict(room)} is no belief over the rooms of the ontology")
+        seen = {name: number for name, number in (seen or {}).items() if number}
+        found = network.among(seen).likelihood(seen)
+        # What was seen is in the belief already: it tells of the share alone.
+        weights = (belief / belief.sum())[:, None] / found.sum(axis=1, keepdims=True)
+        return network.beside(seen, np.asarray(np.broadcast_to(weights, found.shape)))
+
+    @cached_property
+    def contents_network(self) -> ContentsNetwork:
+        """What rooms hold, by the figures and co-occurrences that the ontology states."""
+        return ContentsNetwork.compile(Stated.of(self.knowledge_base))
+
+    def _found(self, categories: Mapping[str, int]) -> Array:
+        """(R, S) likelihood, in the network of those categories that were looked for."""
+        among = frozenset(categories)
+        if among not in self._contents_among:
+            self._contents_among[among] = self.contents_network.among(among)
+        return self._contents_among[among].likelihood(categories)
+
+    @cached_property
+    def _contents_among(self) -> dict[frozenset[str], ContentsNetwork]:
+        return {}
 
     def write_bif(self, path: Path) -> None:
         """Write the networks, as one without edges between them, in BIF."""

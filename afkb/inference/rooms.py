@@ -10,11 +10,11 @@ import numpy as np
 
 from afkb.errors import EvidenceError
 from afkb.inference.bands import Array
+from afkb.inference.holdings import shares_of
 from afkb.knowledge import UNKNOWN_ROOM, AfNet
 
 COUNT_BINS = ((0, 0), (1, 1), (2, 2), (3, 4), (5, 8), (9, None))
 """Counts that the network tells apart, first to last; None is without end."""
-_SHARES = ("ShareSeenLittle", "ShareSeenHalf", "ShareSeenMost")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,7 +36,7 @@ class RoomNetwork:
         """The network of the rooms and expected counts that the ontology states (paper §II.F)."""
         prior = np.array([r.expected_number for r in kb.rooms.values()])
         prior /= prior.sum()
-        shares = tuple(kb.parameters[name] for name in _SHARES)
+        shares = shares_of(kb)
         stated = {n for r in kb.rooms.values() for n in r.expected_counts}
         counts = {name: _count_table(kb, name, prior, shares) for name in sorted(stated)}
         return cls(rooms=tuple(kb.rooms), prior=prior, shares=shares, counts=counts)
@@ -46,14 +46,28 @@ class RoomNetwork:
 
         Raises `EvidenceError` for a name that is no counted evidence class or a bad count.
         """
-        joint = np.repeat((self.prior / len(self.shares))[:, None], len(self.shares), axis=1)
-        for name in sorted(counts):
-            joint = joint * self.counts[self.known(name)][bin_of(name, counts[name])]
+        joint = self.likelihood(counts) * self.joint_prior
         weights = joint.sum(axis=1)
         total = float(weights.sum())
         if not total > 0:
             raise EvidenceError(f"no room category can hold {dict(counts)}; check expectedCount")
         return dict(zip(self.rooms, (weights / total).tolist(), strict=True))
+
+    @property
+    def joint_prior(self) -> Array:
+        """(R, S) P(room, share seen) before anything is counted."""
+        shares = len(self.shares)
+        return np.repeat(self.prior[:, None] / shares, shares, axis=1)
+
+    def likelihood(self, counts: Mapping[str, int]) -> Array:
+        """P(counts | room, share seen), (R, S); ones where nothing is counted.
+
+        Raises `EvidenceError` for a name that is no counted evidence class or a bad count.
+        """
+        likelihood = np.ones((len(self.rooms), len(self.shares)))
+        for name in sorted(counts):
+            likelihood *= self.counts[self.known(name)][bin_of(name, counts[name])]
+        return likelihood
 
     def known(self, name: str) -> str:
         """The name, if it is a counted evidence class."""

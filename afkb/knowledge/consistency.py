@@ -20,6 +20,7 @@ PARAMETERS = (
     "ShareSeenMost",
     "SizeNoise",
     "SizeSpread",
+    "StrayShare",
     "UnknownBreadth",
     "UnknownRoomBreadth",
 )
