@@ -55,8 +55,8 @@ def learn(
 ) -> None:
     """Learn from homes of your own: an extension that refits the network's figures.
 
-    Your rooms are counted together with those behind the ontology, and smoothed alike. Use the
-    extension wherever there is `--ontology`. It names the tables, so that a table that is corrected
+    The ontology's figures are where yours begin: each counts for eight rooms. Use the extension
+    wherever there is `--ontology`. It names the tables, so that a table that is corrected
     later is counted anew.
 
     Example: afkb ontology learn my-homes.csv --out my-homes.yaml

@@ -4,37 +4,40 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 from afkb.csv_rows import Row
 from afkb.extensions.sheet import Sheet
 from afkb.extensions.terms import Term, Terms
-from afkb.figures import Figures, Names, count_rooms
+from afkb.figures import Figures, Names, count_rooms, refitted
 from afkb.ontology.counted import IN_ROOM, in_room_row
 from afkb.ontology.names import AFN
 from afkb.ontology.schema import Table
 
 
 def home_rows(sheet: Sheet, terms: Terms, tables: Path) -> Iterator[tuple[Table, Row]]:
-    """A figure for each category and room met in the homes, with those that were counted before.
+    """A figure for each category and room met in the homes, refitted from the ontology's.
 
-    That a room of theirs lacks what another has counts, too.
-    They are the extension's own: the ontology's figure of the same thing and room stays beside.
+    That a room of theirs lacks what another has counts, too. They are the extension's own: the
+    ontology's figure of the same thing and room stays beside, and is not read any more.
     `tables`: the folder of the ontology's tables, which knows what people call things.
     """
     if not sheet.homes:
         return
     homes = count_homes(sheet.homes, terms, tables)
     bundled = tables.parent / "counts"
-    pooled = Figures.load(bundled).plus(homes) if bundled.is_dir() else homes
+    found = refitted(_general(bundled), homes) if bundled.is_dir() else homes.in_rooms(least=0)
     brought = " + ".join(path.name for path in sheet.homes)
-    for place in homes.in_rooms(least=0):
-        figure = pooled.object_in_room(place.category, place.room)
-        number = pooled.number_in_room(place.category, place.room)
-        row = in_room_row(replace(place, figure=figure, number=number))
-        cells = row.cells | {"source": f"counted in {figure.source}; homes: {brought}"}
+    for place in found:
+        row = in_room_row(place)
+        cells = row.cells | {"source": f"counted in {place.figure.source}: {brought}"}
         yield IN_ROOM, Row(brought, 0, cells)
+
+
+@lru_cache(maxsize=1)
+def _general(folder: Path) -> Figures:
+    return Figures.load(folder)
 
 
 def count_homes(homes: list[Path], terms: Terms, tables: Path) -> Figures:

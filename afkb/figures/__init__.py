@@ -7,6 +7,7 @@ from afkb.figures.figures import Figures
 from afkb.figures.files import read_counts, write_counts
 from afkb.figures.names import Names
 from afkb.figures.reading import Shape
+from afkb.figures.refitting import refitted
 from afkb.figures.simulated import read_simulated
 
 __all__ = [
@@ -22,5 +23,6 @@ __all__ = [
     "count_rooms",
     "read_counts",
     "read_simulated",
+    "refitted",
     "write_counts",
 ]

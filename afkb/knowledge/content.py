@@ -44,7 +44,7 @@ from afkb.knowledge.thing_reading import (
     read_measure,
     read_scale,
 )
-from afkb.ontology.names import fragment
+from afkb.ontology.names import AFN, fragment
 
 T = TypeVar("T", bound=StatedFigure)
 
@@ -102,14 +102,14 @@ def read_content(files: Sequence[Path]) -> Content:
 
 
 def _best_counted(facts: Facts, class_name: str, read: Callable[[Facts, str], T]) -> tuple[T, ...]:
-    """Every figure of a class; of those with one name, the one that rests on the most trials.
+    """Every figure of a class; of those with one name, an extension's, else the one read first.
 
-    Figures of an extension's homes are counted with those of the ontology, which they replace.
+    An extension's figures are of its user's own homes, refitted from those of the ontology.
     """
     best: dict[str, T] = {}
     for iri in facts.of_type(class_name):
         item = read(facts, iri)
-        if item.name not in best or item.trials > best[item.name].trials:
+        if item.name not in best or best[item.name].iri.startswith(AFN):
             best[item.name] = item
     return tuple(best[name] for name in sorted(best))
 

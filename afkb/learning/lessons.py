@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from afkb.errors import KnowledgeError
-from afkb.figures import Figures, Names, count_rooms
+from afkb.figures import Figures, Names, count_rooms, refitted
 from afkb.figures.counting import Unknown
 from afkb.figures.reading import Shape
 from afkb.ontology.bundled import bundled_ontology
@@ -46,10 +46,10 @@ class Lessons:
 
 
 def learnt(tables: Sequence[Path]) -> Lessons:
-    """What these tables of homes teach, counted together with what the ontology was built from.
+    """What these tables of homes teach beside what the ontology was built from.
 
-    Own rooms count as much as others: figures are Beta means about the rate anywhere
-    (`afkb.figures.smoothing`). Raises `KnowledgeError` with file and line for a bad table, and
+    Own rooms are counted; the ontology's figures are where they begin (`afkb.figures.refitting`).
+    Raises `KnowledgeError` with file and line for a bad table, and
     where nothing in them can be counted.
     """
     folder = bundled_ontology().parent
@@ -61,17 +61,21 @@ def learnt(tables: Sequence[Path]) -> Lessons:
             f"{names}: no room of a known category to learn from; name each room's category, "
             "as in `afkb ontology show rooms`"
         )
-    before, own = _counted(folder / "counts"), Figures(counts)
-    after = before.plus(own)
-    changed = []
-    for place in own.in_rooms(least=0):
-        known = place.category in before.categories()
-        old = before.object_in_room(place.category, place.room).p if known else None
-        new = after.object_in_room(place.category, place.room).p
-        own_figure = place.figure
-        changed.append(
-            Lesson(place.category, place.room, old, new, own_figure.successes, own_figure.trials)
+    general = _counted(folder / "counts")
+    known = set(general.categories())
+    changed = [
+        Lesson(
+            place.category,
+            place.room,
+            general.object_in_room(place.category, place.room).p
+            if place.category in known
+            else None,
+            place.figure.p,
+            place.figure.successes,
+            place.figure.trials,
         )
+        for place in refitted(general, Figures(counts))
+    ]
     return Lessons(
         homes=len(counts.buildings),
         rooms=sum(tally.rooms for tally in tallies),
