@@ -14,16 +14,20 @@ def after(
     """Probability after one step; `rule` is the one by which repeated predictions grow.
 
     A first sighting or prediction, `before` which nothing is known, is believed as it is. A look
-    multiplies the odds by its likelihood ratio, time the probability by the share that it leaves.
+    multiplies the odds by its likelihood ratio, as does a wall that comes to light; time, and that
+    evidence is gone, the probability by the share that they leave. What confirms a prediction says
+    how probable it is now.
     """
     if before is None:
         return evidence
     if kind is ChangeKind.SIGHTED:
         return log_odds(before, evidence)
-    if kind in (ChangeKind.SEEN_THROUGH, ChangeKind.OVERLOOKED):
+    if kind in (ChangeKind.SEEN_THROUGH, ChangeKind.OVERLOOKED, ChangeKind.WALLED_OFF):
         return against(before, evidence)
-    if kind is ChangeKind.AGED:
+    if kind in (ChangeKind.AGED, ChangeKind.EVIDENCE_GONE):
         return before * evidence
+    if kind is ChangeKind.CONFIRMED:
+        return evidence
     return rule(before, evidence)
 
 

@@ -16,6 +16,8 @@ from afkb_mapping.grid.input import insert_view
 from afkb_mapping.grid.occupancy import GridBuilder
 from afkb_mapping.ids import Ids
 from afkb_mapping.places import Places
+from afkb_mapping.predictions.endings import Ended, ends_counted
+from afkb_mapping.predictions.entities import hazard_of_prediction
 from afkb_mapping.predictions.expectations import Expectations
 from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.snapshot import MapContent, snapshot
@@ -57,7 +59,7 @@ class AffordanceMapper:
         expected = self._expectations.expect(hypotheses, detections, observed, view)  # v_ap, v_ac
         self._expectations.reinforce(expected, view)  # v_ap ~ v_ap_m: p rises, c = mean
         self._look_for_missing(view, observed)
-        self._expectations.refute_doubtful(expected)
+        self._expectations.refute_doubtful(expected, view)
         self._link(view, detections, observed, expected)  # V_r, E_d, E_l
 
     def finish(self, T_map_source: NDArray[np.float64]) -> TopologicalMap:
@@ -79,8 +81,10 @@ class AffordanceMapper:
                 "births": self._association.births,
                 "merges": self._association.merges,
                 "splits": self._association.splits,
-                "refuted": self._expectations.refuted,
+                **ends_counted(self._expectations.ended),
             },
+            ended=self._expectations.ended,
+            id_now=self._association.id_now,
         )
         return snapshot(content, T_map_source)
 
@@ -106,21 +110,23 @@ class AffordanceMapper:
             # What was gone already leaves its place to what is put there.
             for track in [t for t in tracks if not t.is_floor and t.existence < GONE_BELOW]:
                 tracks.remove(track)
+                self._expectations.forget(track, stamp)
+        self._expectations.age(seconds, stamp, lambda p: hazard_of_prediction(p, self._network))
         age(tracks, seconds, stamp, lambda track: hazard_of_track(track, self._network))
 
     def _confirm(self, observed: Sequence[ObservedTrack | None], view: View) -> None:
         """What is seen for sure gives a prediction its place; what is doubtful confirms nothing."""
         for track in dict.fromkeys(t for t in observed if t is not None and is_kept(t)):
-            for prediction in self._expectations.fulfilled_by(track):
-                self._close(prediction, track, view)
+            for ended in self._expectations.fulfilled_by(track, view):
+                self._close(ended, track, view)
 
-    def _close(self, prediction: PredictedTrack, track: ObservedTrack, view: View) -> None:
+    def _close(self, ended: Ended, track: ObservedTrack, view: View) -> None:
         """A prediction comes true: it gives way to the observed node that replaces it."""
-        current = self._places.current
+        prediction, current = ended.prediction, self._places.current
         closure = Closure(
             entity=track.id,
             predicted_as=prediction.kind,
-            predicted_probability=prediction.probability,
+            predicted_probability=ended.probability,
             displacement_m=0.0,
             place=current.id if current else "",
             stamp=view.stamp,
@@ -128,7 +134,7 @@ class AffordanceMapper:
         )
         self._closures.append((closure, prediction.center_xy))
         track.predicted_first = track.predicted_first or prediction.kind
-        track.predicted_from.update(prediction.anchors)
+        track.predicted_from.update(dict.fromkeys(prediction.anchors))
         track.axioms.update(prediction.axioms)
 
     def _settled_closures(self) -> list[Closure]:
@@ -153,7 +159,7 @@ class AffordanceMapper:
         for track in self._association.tracks.near(*sight.reach):
             if track.id not in seen:
                 look_at(track, sight, eye, view)
-        self._expectations.look_for(sight, eye)
+        self._expectations.look_for(sight, view)
 
     def _link(
         self,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,13 +23,15 @@ from afkb_mapping.doorways.merger import DoorwayMerger, SeenDoorway
 from afkb_mapping.edges import edges_of
 from afkb_mapping.grid.occupancy import rasterised
 from afkb_mapping.places import Place
+from afkb_mapping.predictions.endings import Ended, past_predictions
+from afkb_mapping.predictions.entities import predicted_entities, supports_expected
 from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.rooms.evidence import RoomEvidence
 from afkb_mapping.rooms.graph import connections, doorways_of
 from afkb_mapping.rooms.lookup import RoomLookup, room_id
 from afkb_mapping.rooms.rooms import Segmentation, divide_by_purpose, segment_rooms
 from afkb_mapping.rooms.two_purposes import second_purpose
-from afkb_mapping.things.entities import observed_entities, predicted_entities, supports_expected
+from afkb_mapping.things.entities import observed_entities
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.visits.bounds_now import bound_now, doorway_now
 from afkb_mapping.way_lengths import way_lengths
@@ -44,6 +46,7 @@ class MapContent:
 
     `trajectory`: stamp (s) and T_map_base (4, 4) of every view; `looked_from`: (2,) m, where the
     base stood when depth was taken; `ways`: from place to place, with how far the robot went, m.
+    `ended`: predictions that are past; `id_now`: of a thing that may have become part of another.
     """
 
     network: Network
@@ -58,6 +61,8 @@ class MapContent:
     trajectory: Sequence[tuple[float, NDArray[np.float64]]]
     looked_from: Sequence[NDArray[np.float64]]
     counts: Mapping[str, int]
+    ended: Sequence[Ended]
+    id_now: Callable[[str], str]
 
 
 def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> TopologicalMap:
@@ -65,7 +70,7 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
     seen_doorways = content.doorways.doorways(content.grid)
     observed = observed_entities(content.tracks, content.network)
     known = {e.id for e in observed}
-    entities = [*observed, *predicted_entities(content.predictions, content.network, known)]
+    entities = [*observed, *_expected(content, known)]
     segmentation, evidence = _parted(content, entities, seen_doorways)
     lookup = RoomLookup(segmentation, content.grid)
     supports = supports_expected(content.predictions, content.tracks)
@@ -97,9 +102,14 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
         T_map_source=T_map_source,
         trajectory=np.array([[stamp, *T.ravel()] for stamp, T in content.trajectory]),
         closures=tuple(c for c in content.closures if c.entity in known),
+        past_predictions=past_predictions(content.ended, known, content.id_now),
         notes=tuple(_notes(observed)),
         counts=dict(content.counts),
     )
+
+
+def _expected(content: MapContent, known: Collection[str]) -> list[Entity]:
+    return predicted_entities(content.predictions, content.network, known, content.id_now)
 
 
 def _parted(

@@ -2,55 +2,59 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from afkb.flow import Detection, Hypothesis, Relation, View
-from afkb.inference.update_rules import update_rule
+from afkb.flow import ChangeKind, Detection, Hypothesis, PredictionState, Relation, View
+from afkb.inference.update_rules import in_part, update_rule
 from afkb_mapping.bounds import BoundMerger
 from afkb_mapping.grid.occupancy import GridBuilder
 from afkb_mapping.ids import Ids
-from afkb_mapping.predictions.grounding import fits, ground, joined, same_prediction
+from afkb_mapping.predictions.endings import Ended
+from afkb_mapping.predictions.grounding import ground
 from afkb_mapping.predictions.index import PredictionIndex
+from afkb_mapping.predictions.matching import fits, joined, same_prediction
 from afkb_mapping.predictions.predicted_track import PredictedTrack
+from afkb_mapping.predictions.whereabouts import TELLING
 from afkb_mapping.things.entities import is_kept
-from afkb_mapping.things.looks import eye_of, look_for
+from afkb_mapping.things.looks import eye_of
 from afkb_mapping.things.standing import support_of
 from afkb_mapping.things.track_index import TrackIndex
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.things.visibility import Sight
-from afkb_mapping.visits.persistence import GONE_BELOW
+from afkb_mapping.visits.persistence import GONE_BELOW, HOUR_S, aged
 
 
 class Expectations:
     """The predicted nodes V_ap and V_ac, in order of discovery.
 
     They are placed by what is known of things (`tracks`), walls and the grid, which others fill.
-    `rule`: name of the rule that makes a repeated prediction surer. `refuted`: how many were given
-    up.
+    `rule`: name of the rule that makes a repeated prediction surer. `ended`: what is expected no
+    more, and why.
     """
 
     def __init__(
         self, rule: str, new_id: Ids, tracks: TrackIndex, bounds: BoundMerger, grid: GridBuilder
     ) -> None:
-        self.refuted = 0
-        self._rule, self._new_id = update_rule(rule), new_id
+        self.ended: list[Ended] = []
+        self._rule, self._update, self._new_id = rule, update_rule(rule), new_id
         self._tracks, self._bounds, self._grid = tracks, bounds, grid
         self._index = PredictionIndex()
 
     def __iter__(self) -> Iterator[PredictedTrack]:
         return iter(self._index)
 
-    def fulfilled_by(self, track: ObservedTrack) -> list[PredictedTrack]:
+    def fulfilled_by(self, track: ObservedTrack, view: View) -> list[Ended]:
         """Those that come true with a thing that is seen for sure; they expect nothing more."""
         extent = track.footprint.extent()
         near = self._index.near(*extent) if extent else []
         fulfilled = [p for p in near if fits(p, track)]
         for prediction in fulfilled:
-            self._index.remove(prediction)
-        return fulfilled
+            self._end(prediction, PredictionState.CONFIRMED, view.stamp, track.id)
+            at = view.stamp, view.index
+            prediction.life.take(ChangeKind.CONFIRMED, 1.0, *at, by=(track.id,))
+        return self.ended[len(self.ended) - len(fulfilled) :]
 
     def expect(
         self,
@@ -59,9 +63,12 @@ class Expectations:
         observed: Sequence[ObservedTrack | None],
         view: View,
     ) -> list[PredictedTrack]:
-        """Hypotheses with a place in the map, without those that something seen already fulfils."""
+        """Hypotheses with a place in the map, without those that something seen already fulfils.
+
+        The lower orders of filtration come first: theirs is what others join (§II.D).
+        """
         expected = []
-        for hypothesis in hypotheses:
+        for hypothesis in sorted(hypotheses, key=lambda h: h.order):
             anchors = [t for i in hypothesis.anchors if (t := observed[i]) is not None]
             if not anchors:
                 continue
@@ -91,26 +98,48 @@ class Expectations:
             like = self._index.like(prediction)
             old = next((p for p in like if same_prediction(p, prediction)), None)
             if old is None:
-                prediction.id = self._new_id("predicted")
-                prediction.viewpoints.is_new(eye_of(view), prediction.center_xy)
-                self._index.put(prediction)
+                self._begin(prediction, view)
                 continue
-            if old.viewpoints.is_new(eye_of(view), old.center_xy):
-                old.probability = self._rule(old.probability, prediction.probability)
-                old.observations += 1
+            self._strengthen(old, prediction, view)
             joined(old, prediction)
             self._index.put(old)
             expected[i] = old
 
-    def look_for(self, sight: Sight, eye: NDArray[np.float64]) -> None:
+    def _begin(self, prediction: PredictedTrack, view: View) -> None:
+        prediction.id = self._new_id("predicted")
+        prediction.viewpoints.is_new(eye_of(view), prediction.center_xy)
+        prediction.life.rule = self._update
+        at = view.stamp, view.index
+        prediction.life.take(ChangeKind.PREDICTED, prediction.strength, *at, by=prediction.anchors)
+        self._index.put(prediction)
+
+    def _strengthen(self, old: PredictedTrack, new: PredictedTrack, view: View) -> None:
+        """A distinct viewpoint counts for what is new in it.
+
+        Another thing, or another axiom, is a piece of evidence of its own. The same thing seen once
+        more is the same evidence: what it adds is that the thing itself has become surer.
+        """
+        if not old.viewpoints.is_new(eye_of(view), old.center_xy):
+            new.anchors = {a: old.anchors.get(a, p) for a, p in new.anchors.items()}
+            return
+        share = 1.0
+        if new.axioms.keys() <= old.axioms.keys() and new.anchors.keys() <= old.anchors.keys():
+            grown = [p - old.anchors[a] for a, p in new.anchors.items()]
+            share = min(max(*grown, 0.0), 1.0)
+        old.observations += 1
+        if share > 0:
+            evidence = in_part(self._rule, new.strength, share)
+            at = view.stamp, view.index
+            old.life.take(ChangeKind.PREDICTED_AGAIN, evidence, *at, by=new.anchors)
+
+    def look_for(self, sight: Sight, view: View) -> None:
         """What is seen through, where a prediction says that something is, counts against it."""
         for prediction in self._index.near(*sight.reach):
-            look_for(prediction, sight, eye)
-            if prediction.probability < GONE_BELOW:
-                self._refute(prediction)
+            ratio = prediction.where.look(sight, prediction.top_range_m)
+            self._take_against(prediction, ChangeKind.SEEN_THROUGH, ratio, view)
 
-    def refute_doubtful(self, expected: Sequence[PredictedTrack]) -> None:
-        """Refute what is too unlikely, or has a wall between it and what it is near to.
+    def refute_doubtful(self, expected: Sequence[PredictedTrack], view: View) -> None:
+        """Take in the walls between predictions and what they are near to.
 
         Only news may have changed that: of these `expected` ones, or of walls since the last view.
         """
@@ -118,16 +147,50 @@ class Expectations:
         for low, high in self._bounds.changed():
             doubtful.update(dict.fromkeys(self._index.near(low, high)))
         for prediction in doubtful:
-            if prediction not in self._index:
+            near = prediction.near_xy
+            if prediction in self._index and near is not None:
+                part = [self._bounds.part(near, xy) for xy in prediction.where.points_xy]
+                ratio = prediction.where.rule_out(np.array(part, dtype=bool))
+                self._take_against(prediction, ChangeKind.WALLED_OFF, ratio, view)
+
+    def age(self, seconds: float, stamp: float, hazard: Callable[[PredictedTrack], float]) -> None:
+        """Let time pass; `hazard`: the rate, 1/s, at which such things are taken away."""
+        for prediction in list(self._index):
+            prediction.decayed = True
+            left = aged(1.0, seconds, hazard(prediction))
+            prediction.life.take(ChangeKind.AGED, left, stamp)
+            if seconds >= HOUR_S:
+                prediction.where.forget_looks()
+            if prediction.probability < GONE_BELOW:
+                self._end(prediction, PredictionState.EXPIRED, stamp)
+
+    def forget(self, track: ObservedTrack, stamp: float) -> None:
+        """A thing has been taken away: what followed from it alone is expected no more."""
+        for prediction in self._index.following_from(track.id):
+            del prediction.anchors[track.id]
+            if prediction.anchors:
+                self._index.put(prediction)
                 continue
-            if prediction.probability < GONE_BELOW or self._is_walled_off(prediction):
-                self._refute(prediction)
+            self._end(prediction, PredictionState.EXPIRED, stamp)
+            prediction.life.take(ChangeKind.EVIDENCE_GONE, 0.0, stamp, by=(track.id,))
 
-    def _refute(self, prediction: PredictedTrack) -> None:
+    def _take_against(
+        self, prediction: PredictedTrack, kind: ChangeKind, ratio: float, view: View
+    ) -> None:
+        if ratio < 1 - TELLING:
+            prediction.decayed = True
+            prediction.life.take(kind, ratio, view.stamp, view.index)
+        if prediction.probability < GONE_BELOW:
+            self._end(prediction, PredictionState.REFUTED, view.stamp)
+
+    def _end(
+        self,
+        prediction: PredictedTrack,
+        state: PredictionState,
+        stamp: float,
+        seen_as: str | None = None,
+    ) -> None:
         self._index.remove(prediction)
-        self.refuted += 1
-
-    def _is_walled_off(self, prediction: PredictedTrack) -> bool:
-        """Whether a wall has come to light between a prediction and what it is near to."""
-        near = prediction.near_xy
-        return near is not None and self._bounds.part(near, prediction.center_xy)
+        before = prediction.life.history[-1].before if state is PredictionState.REFUTED else None
+        probability = prediction.probability if before is None else before
+        self.ended.append(Ended(prediction, state, stamp, probability, seen_as))

@@ -57,6 +57,10 @@ class PredictionIndex:
             found.update(self._by_anchor.get(anchor, {}))
         return self._boxes.in_order(found)
 
+    def following_from(self, anchor: str) -> list[PredictedTrack]:
+        """Predictions that follow from a thing, by its id, in order of discovery."""
+        return self._boxes.in_order(dict(self._by_anchor.get(anchor, {})))
+
     def _forget_anchors(self, prediction: PredictedTrack) -> None:
         for anchor in self._anchors.pop(prediction, ()):
             others = self._by_anchor[anchor]

@@ -7,64 +7,72 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.flow import NodeKind
+from afkb.flow import NodeKind, PredictionState, Relation
+from afkb_mapping.predictions.whereabouts import Whereabouts
+from afkb_mapping.things.existence import Existence
 from afkb_mapping.things.viewpoints import Viewpoints
+
+Array = NDArray[np.float64]
 
 
 @dataclass(slots=True, eq=False)
 class PredictedTrack:
     """One thing that is expected (V_ap or V_ac), where, how high, and how likely it is.
 
-    It covers an upright rectangle `low_xy`..`high_xy` of the floor plane; `top_range_m` are the
-    heights its top may have, m. `near_xy`: what it is expected near to, None for what is below.
+    - `where`: the distribution of its middle; `top_range_m`: the heights its top may have, m.
+    - `strength`: what the axiom says of it. `size_xy_m`: its typical extent.
+    - `anchors`: id of what it follows from to the existence it had when it last counted.
+    - `near_xy`: what it is expected near to, None for what is below or on something; `reach_m`: how
+      far from there, or from where it is expected, something may be that fulfils it.
     """
 
     id: str
     kind: NodeKind
-    low_xy: NDArray[np.float64]
-    high_xy: NDArray[np.float64]
+    relation: Relation
+    where: Whereabouts
     top_range_m: tuple[float, float]
-    probability: float
+    strength: float
     affordances: dict[str, float]
     scale: str
-    anchors: dict[str, None]
+    anchors: dict[str, float]
     predictor: str
     axioms: dict[str, None]
     first_seen: float
     last_seen: float
+    size_xy_m: tuple[float, float] = (0.0, 0.0)
     categories: dict[str, float] = field(default_factory=dict)
+    life: Existence = field(default_factory=Existence)
+    decayed: bool = False
     observations: int = 1
     viewpoints: Viewpoints = field(default_factory=Viewpoints)
-    empty_from: Viewpoints = field(default_factory=Viewpoints)
     places: dict[str, None] = field(default_factory=dict)
     reach_m: float = 0.0
-    near_xy: NDArray[np.float64] | None = None
+    near_xy: Array | None = None
 
     @property
-    def center_xy(self) -> NDArray[np.float64]:
-        """Middle of the rectangle, m."""
-        return (self.low_xy + self.high_xy) / 2
+    def probability(self) -> float:
+        """That there is such a thing, where it is expected."""
+        return self.life.probability
 
     @property
-    def size_xy(self) -> NDArray[np.float64]:
-        """Extent of the rectangle, m."""
-        return self.high_xy - self.low_xy
+    def state(self) -> PredictionState:
+        """How it stands, as long as it is expected."""
+        return PredictionState.DECAYED if self.decayed else PredictionState.PREDICTED
 
-    def place(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Corners (2,) of where something may be that fulfils it, m: half its reach around it."""
-        return self.low_xy - self.reach_m / 2, self.high_xy + self.reach_m / 2
+    @property
+    def center_xy(self) -> Array:
+        """Where it most probably is, m: of what is below or on things, the middle."""
+        if self.relation is Relation.NEAR:
+            return self.where.best_xy()
+        return (self.where.low_xy + self.where.high_xy) / 2
 
-    def domain(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Corners (2,) of all that speaks for or against it: its place, and what it is near to."""
+    def place(self) -> tuple[Array, Array]:
+        """Corners (2,) of where something may be that fulfils it, m."""
+        if self.near_xy is not None:
+            return self.near_xy - self.reach_m, self.near_xy + self.reach_m
+        return self.where.low_xy - self.reach_m / 2, self.where.high_xy + self.reach_m / 2
+
+    def domain(self) -> tuple[Array, Array]:
+        """Corners (2,) of all that speaks for or against it: its place, and its distribution."""
         low, high = self.place()
-        near = self.center_xy if self.near_xy is None else self.near_xy
-        return np.minimum(low, near), np.maximum(high, near)
-
-    def sample_points(self, step_m: float = 0.1) -> NDArray[np.float64]:
-        """(N, 2) points of its expected upper surface, map frame."""
-        axes = [
-            np.linspace(lo, hi, max(2, round((hi - lo) / step_m)))
-            for lo, hi in zip(self.low_xy, self.high_xy, strict=True)
-        ]
-        x, y = np.meshgrid(*axes)
-        return np.column_stack([x.ravel(), y.ravel()])
+        return np.minimum(low, self.where.low_xy), np.maximum(high, self.where.high_xy)

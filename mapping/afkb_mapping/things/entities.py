@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
-
-import numpy as np
+from collections.abc import Collection, Sequence
 
 from afkb.flow import Entity, NodeKind
 from afkb.inference import Network
-from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.things.footprint import Outline
 from afkb_mapping.things.same_thing import around
-from afkb_mapping.things.standing import FOOT_HIDDEN_M, STANDS_WITHIN_M, support_of
+from afkb_mapping.things.standing import STANDS_WITHIN_M, support_of
 from afkb_mapping.things.track_index import TrackIndex
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.visits.persistence import hazard_of
@@ -133,81 +130,3 @@ def hazard_of_track(track: ObservedTrack, network: Network) -> float:
         network.known(affordances), (*outline.size_xy, top - bottom), top, track.extent_known
     )
     return hazard_of(network.movability(belief)[1])
-
-
-def predicted_entities(
-    predictions: Iterable[PredictedTrack], network: Network, known: Collection[str]
-) -> list[Entity]:
-    """Entities (V_ap, V_ac) of predictions whose anchors are still in the map."""
-    entities = []
-    for track in predictions:
-        anchors = tuple(a for a in track.anchors if a in known)
-        if anchors:
-            entities.append(_predicted(track, anchors, network))
-    return entities
-
-
-def _known_categories(track: PredictedTrack, network: Network) -> dict[str, float]:
-    """A predictor's categories, without those that the ontology lacks."""
-    known = network.knowledge_base.categories
-    return {name: p for name, p in track.categories.items() if name in known}
-
-
-def supports_expected(
-    predictions: Iterable[PredictedTrack], tracks: Iterable[ObservedTrack]
-) -> dict[str, str]:
-    """Thing to the unseen support that it follows from and may stand on: id to id."""
-    bottoms = {t.id: t.bottom.value for t in tracks}
-    return {
-        anchor: track.id
-        for track in predictions
-        if track.kind is NodeKind.DUAL and "SupportAbility" in track.affordances
-        for anchor in track.anchors
-        if track.top_range_m[0] - STANDS_WITHIN_M
-        <= bottoms.get(anchor, -1.0)
-        <= track.top_range_m[1] + FOOT_HIDDEN_M
-    }
-
-
-def _predicted(track: PredictedTrack, anchors: tuple[str, ...], network: Network) -> Entity:
-    x, y = (float(v) for v in track.center_xy)
-    width, depth = (float(v) for v in track.size_xy)
-    top = (
-        sum(track.top_range_m) / 2
-        if track.kind is NodeKind.CO_OCCURRENCE
-        else (track.top_range_m[1])
-    )
-    size = (width, depth, SURFACE_THICKNESS_M)
-    belief = _known_categories(track, network) or network.category_posterior(
-        network.known(track.affordances), size, top
-    )
-    movability, weight = network.movability(belief)
-    polygon = np.array(
-        [
-            track.low_xy,
-            [track.high_xy[0], track.low_xy[1]],
-            track.high_xy,
-            [track.low_xy[0], track.high_xy[1]],
-        ]
-    )
-    return Entity(
-        id=track.id,
-        kind=track.kind,
-        position_xyz=(x, y, top),
-        size_xyz=size,
-        yaw=0.0,
-        affordances=track.affordances,
-        existence=track.probability,
-        category_belief=belief,
-        movability=movability,
-        matching_weight=weight,
-        observations=track.observations,
-        first_seen=track.first_seen,
-        last_seen=track.last_seen,
-        seen_from=tuple(track.places),
-        generated_by=(track.predictor,),
-        predicted_from=anchors,
-        axioms=tuple(track.axioms),
-        extent_known=False,
-        polygon_xy=polygon,
-    )

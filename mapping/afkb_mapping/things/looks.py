@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import ChangeKind, View
-from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.things.visibility import Look, Sight
 from afkb_mapping.visits.persistence import (
@@ -16,7 +15,6 @@ from afkb_mapping.visits.persistence import (
     HOUR_S,
     OVERLOOKED_LIKELIHOOD_RATIO,
     aged,
-    seen_through,
 )
 
 LOOKED_AT_SHARE = 0.7
@@ -48,13 +46,6 @@ def look_at(track: ObservedTrack, sight: Sight, eye: NDArray[np.float64], view: 
     elif _is_overlooked(track, found, eye) and track.missed_from.is_new(eye, body[0]):
         kind, ratio = ChangeKind.OVERLOOKED, OVERLOOKED_LIKELIHOOD_RATIO
         track.life.take(kind, ratio, view.stamp, view.index)
-
-
-def look_for(prediction: PredictedTrack, sight: Sight, eye: NDArray[np.float64]) -> None:
-    """Take in whether a view saw through where something is expected."""
-    empty = is_empty(sight.look(prediction.sample_points(), prediction.top_range_m[1]))
-    if empty and prediction.empty_from.is_new(eye, prediction.center_xy):
-        prediction.probability = seen_through(prediction.probability)
 
 
 def age(

@@ -64,6 +64,24 @@ class Sight:
         some_xy = np.ascontiguousarray(points_xy[:: max(1, len(points_xy) // most)])
         return Look(*_look(some_xy, height_m, self._depth_m, self._intrinsics, self._T_camera_map))
 
+    def sees_through(self, points_xy: NDArray[np.float64], height_m: float) -> NDArray[np.bool_]:
+        """(N,) whether depth lies clearly behind points (N, 2), map frame, at a height, m."""
+        if self._depth_m is None:
+            return np.zeros(len(points_xy), dtype=bool)
+        fx, fy, cx, cy = self._intrinsics
+        heights = np.full(len(points_xy), height_m)
+        T = self._T_camera_map
+        x, y, z = T[:3, :3] @ np.vstack([points_xy.T, heights]) + T[:3, 3:]
+        ahead = (z > NEAREST_M) & (z < USABLE_RANGE_M)
+        depths = np.where(ahead, z, 1.0)
+        u = np.round(fx * x / depths + cx).astype(np.int64)
+        v = np.round(fy * y / depths + cy).astype(np.int64)
+        rows, cols = self._depth_m.shape
+        inside = ahead & (u >= 0) & (u < cols) & (v >= 0) & (v < rows)
+        measured = np.where(inside, self._depth_m[v.clip(0, rows - 1), u.clip(0, cols - 1)], 0.0)
+        through: NDArray[np.bool_] = inside & (measured - z > MARGIN_M + MARGIN_PER_RANGE * z)
+        return through
+
 
 @kernel
 def _look(

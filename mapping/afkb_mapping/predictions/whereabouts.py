@@ -1,0 +1,120 @@
+"""Where something is that was not seen yet: a distribution over points of the floor plane.
+
+A region in the sense of a Bayes filter over places (Thrun, Burgard and Fox, Probabilistic Robotics,
+ch. 2 and 4): what a relation says of each point, times what looks have said of it since.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from afkb_mapping.things.visibility import Sight
+from afkb_mapping.visits.persistence import EMPTY_LIKELIHOOD_RATIO
+
+Array = NDArray[np.float64]
+
+DIRECTIONS = 16
+RINGS = (-1.0, 0.0, 1.0)
+"""Distances at which a ring is sampled, in standard deviations from its mean."""
+MOST_ALONG = 8
+"""Points of a rectangle along its longer side, so that a distribution stays small."""
+FINEST_M = 0.10
+TELLING = 1e-3
+"""A look that changes the odds by less is none."""
+
+
+@dataclass(slots=True, eq=False)
+class Whereabouts:
+    """Points (N, 2), map frame, m, each the middle of a square of `step_m`.
+
+    `prior` (N,): what relation, grid and walls say, not normalised. `told` (N, 2): likelihood of
+    what looks saw there, at the lowest and at the highest top that the thing may have.
+    """
+
+    points_xy: Array
+    prior: Array
+    told: Array
+    step_m: float
+
+    @classmethod
+    def even(cls, low_xy: Array, high_xy: Array) -> Whereabouts:
+        """Anywhere in a rectangle, m."""
+        step = max(FINEST_M, float((high_xy - low_xy).max()) / MOST_ALONG)
+        axes = [
+            lo + (np.arange(n) + 0.5) * (hi - lo) / n
+            for lo, hi in zip(low_xy, high_xy, strict=True)
+            for n in [max(1, round(float(hi - lo) / step))]
+        ]
+        points = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
+        return cls(points, np.ones(len(points)), np.ones((len(points), 2)), step)
+
+    @classmethod
+    def around(cls, middle_xy: Array, distance_m: tuple[float, float]) -> Whereabouts:
+        """About a point (2,), at a distance of that mean and standard deviation, m."""
+        mean, sd = distance_m
+        radii = np.maximum(mean + np.array(RINGS) * sd, FINEST_M)
+        angles = np.arange(DIRECTIONS) * 2 * np.pi / DIRECTIONS
+        headings = np.column_stack([np.cos(angles), np.sin(angles)])
+        points = (middle_xy + radii[:, None, None] * headings).reshape(-1, 2)
+        weights = np.repeat(np.exp(-0.5 * np.square(RINGS)), DIRECTIONS)
+        step = float(np.sqrt(np.pi * (radii[-1] ** 2 - max(radii[0] - sd, 0) ** 2) / len(points)))
+        return cls(points, weights, np.ones((len(points), 2)), max(step, FINEST_M))
+
+    @property
+    def shares(self) -> Array:
+        """(N,) probability of each point if the thing is there at all; they sum to 1."""
+        weights = self.prior * self.told.mean(axis=1)
+        total = float(weights.sum())
+        return weights / total if total > 0 else np.full(len(weights), 1 / len(weights))
+
+    @property
+    def low_xy(self) -> Array:
+        """Lower corner (2,) of what has a share, m."""
+        low: Array = self.points_xy[self.prior > 0].min(axis=0) - self.step_m / 2
+        return low
+
+    @property
+    def high_xy(self) -> Array:
+        """Upper corner (2,), m."""
+        high: Array = self.points_xy[self.prior > 0].max(axis=0) + self.step_m / 2
+        return high
+
+    def best_xy(self) -> Array:
+        """The likeliest point (2,), m."""
+        return np.array(self.points_xy[int(np.argmax(self.shares))])
+
+    def look(self, sight: Sight, tops_m: tuple[float, float]) -> float:
+        """Take in a look; returns its likelihood ratio, thing there : thing gone.
+
+        A point that is seen through at a height counts once, whatever sees through it again: looks
+        that err, for a pose or a see-through thing, mostly err together.
+        """
+        before = self.told.copy()
+        for column, top in enumerate(tops_m):
+            through = sight.sees_through(self.points_xy, top)
+            self.told[through, column] = EMPTY_LIKELIHOOD_RATIO
+        weights = self.prior * before.mean(axis=1)
+        return float((self.prior * self.told.mean(axis=1)).sum() / weights.sum())
+
+    def rule_out(self, ruled_out: NDArray[np.bool_]) -> float:
+        """Take in that the thing is not at some points (N,); returns the likelihood ratio."""
+        before = float((self.prior * self.told.mean(axis=1)).sum())
+        self.prior = np.where(ruled_out, self.prior * EMPTY_LIKELIHOOD_RATIO, self.prior)
+        return float((self.prior * self.told.mean(axis=1)).sum()) / before
+
+    def forget_looks(self) -> None:
+        """Let looks be evidence again: time has passed."""
+        self.told = np.ones_like(self.told)
+
+    def takes_looks_of(self, other: Whereabouts) -> None:
+        """Keep what looks said of another distribution, point by point or at the nearest one."""
+        if len(self.points_xy) == len(other.points_xy):
+            self.told = other.told
+            return
+        apart = np.linalg.norm(self.points_xy[:, None] - other.points_xy[None], axis=2)
+        nearest = apart.argmin(axis=1)
+        told = other.told[nearest]
+        self.told = np.where((apart.min(axis=1) <= other.step_m)[:, None], told, 1.0)
