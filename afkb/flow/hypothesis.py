@@ -23,7 +23,7 @@ class Hypothesis:
     - `order`: 1 for an affordance dual, 2 for a co-occurrence.
     - `anchors`: indexes, into the view's detections, of what it follows from.
     - `affordances`: feature name to probability, of the predicted thing.
-    - `categories`: object category to probability, may be empty.
+    - `categories`: object category to probability; None leaves it to what a map states of it.
     - `scale`: scale class of the predicted thing (`Small`, `Medium`, `Large`).
     - `distance_m`: mean and standard deviation of the horizontal distance from the anchors, m.
     - `size_xy_m`: typical extent of the predicted thing, m.

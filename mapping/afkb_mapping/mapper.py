@@ -43,7 +43,14 @@ class AffordanceMapper:
         self._doorways = DoorwayMerger(passage_width(network.knowledge_base))
         self._grid = GridBuilder()
         tracks = self._association.tracks
-        self._expectations = Expectations(rule, new_id, tracks, self._bounds, self._grid)
+        self._expectations = Expectations(
+            rule,
+            network.knowledge_base.parameters["FaintestHypothesis"],
+            new_id,
+            tracks,
+            self._bounds,
+            self._grid,
+        )
         self._closures: list[tuple[Closure, NDArray[np.float64]]] = []
         self._trajectory: list[tuple[float, NDArray[np.float64]]] = []
         self._looked_from: list[NDArray[np.float64]] = []

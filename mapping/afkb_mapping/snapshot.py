@@ -61,8 +61,8 @@ class MapContent:
     trajectory: Sequence[tuple[float, NDArray[np.float64]]]
     looked_from: Sequence[NDArray[np.float64]]
     counts: Mapping[str, int]
-    ended: Sequence[Ended]
-    id_now: Callable[[str], str]
+    ended: Sequence[Ended] = ()
+    id_now: Callable[[str], str] = str
 
 
 def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> TopologicalMap:

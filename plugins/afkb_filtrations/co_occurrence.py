@@ -81,22 +81,18 @@ class CoOccurrencePredictor:
         self, network: Network, rule: CoOccurrence, anchors: tuple[int, ...], probability: float
     ) -> Hypothesis:
         heights = self._predicted_class(rule).top_height_m
-        affordances = {rule.feature: 1.0}
         return Hypothesis(
             predictor=self.name,
             order=self.order,
             relation=Relation.NEAR,
             anchors=anchors,
-            affordances=affordances,
+            affordances={rule.feature: 1.0},
             scale=rule.predicted_scale,
             probability=probability,
             axiom=rule.iri,
             distance_m=rule.distance_m,
             size_xy_m=rule.size_xy_m,
             top_height_m=heights,
-            categories=network.category_posterior(
-                affordances, (*rule.size_xy_m, 0.0), sum(heights) / 2
-            ),
         )
 
     def _predicted_class(self, rule: CoOccurrence) -> EvidenceClass:

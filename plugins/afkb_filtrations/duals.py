@@ -94,23 +94,17 @@ class DualPredictor:
             (dual_of[i] for i in anchors),
             key=lambda d: (network.relations.dual(d.name), d.name),
         )
-        lowest = min(detections[i].box.bottom for i in anchors)
-        below = dual.relation == "below"
-        affordances = {dual.predicted: 1.0}
         return Hypothesis(
             predictor=self.name,
             order=self.order,
             relation=Relation(dual.relation),
             anchors=tuple(sorted(anchors)),
-            affordances=affordances,
+            affordances={dual.predicted: 1.0},
             scale=dual.predicted_scale,
             probability=network.relations.dual(dual.name),
             axiom=dual.iri,
             distance_m=dual.distance_m,
             size_xy_m=dual.size_xy_m,
-            categories=network.category_posterior(
-                affordances, (0.0, 0.0, 0.0) if below else (*dual.size_xy_m, 0.0), lowest
-            ),
         )
 
 

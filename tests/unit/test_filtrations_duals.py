@@ -47,9 +47,7 @@ def test_a_container_predicts_a_support_below_it(predictor: DualPredictor) -> No
     assert found.affordances == {"SupportAbility": 1.0}
     assert found.probability == pytest.approx(0.7)
     assert found.axiom == "https://w3id.org/afkb/afnet#ContainPredictsSupportBelow"
-    assert found.categories is not None
-    best = max(found.categories, key=found.categories.__getitem__)
-    assert best in {"Table", "KitchenTable", "Desk"}
+    assert found.categories is None
 
 
 def test_containers_that_may_share_a_support_predict_one(predictor: DualPredictor) -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import Entity, NodeKind, Region, Relation
 from afkb.inference import Network
+from afkb_mapping.predictions.grounding import HEIGHT_TOLERANCE_M
 from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.things.entities import SURFACE_THICKNESS_M
 from afkb_mapping.things.standing import FOOT_HIDDEN_M, STANDS_WITHIN_M
@@ -89,9 +90,9 @@ def _predicted(track: PredictedTrack, anchors: tuple[str, ...], network: Network
 
 def _extent(track: PredictedTrack) -> Array:
     """(2,) m: its typical extent, or of what is below or on things the region's."""
+    extent: Array = np.subtract(track.where.high_xy, track.where.low_xy)
     if track.relation is Relation.NEAR:
-        return np.maximum(np.asarray(track.size_xy_m), LEAST_EXTENT_M)
-    extent: Array = track.where.high_xy - track.where.low_xy
+        extent = np.maximum(np.asarray(track.size_xy_m, np.float64), LEAST_EXTENT_M)
     return extent
 
 
@@ -101,9 +102,9 @@ def hazard_of_prediction(track: PredictedTrack, network: Network) -> float:
 
 
 def _top(track: PredictedTrack) -> float:
-    """The middle of the heights its top may have; of what is below its anchors the highest."""
-    near = track.relation is Relation.NEAR
-    return sum(track.top_range_m) / 2 if near else track.top_range_m[1]
+    """Where its top is expected, m: of what carries things at their feet, else in the middle."""
+    low, high = track.top_range_m
+    return high - HEIGHT_TOLERANCE_M if track.relation is Relation.BELOW else (low + high) / 2
 
 
 def _belief(track: PredictedTrack, network: Network) -> dict[str, float]:

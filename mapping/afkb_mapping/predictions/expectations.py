@@ -30,17 +30,24 @@ class Expectations:
     """The predicted nodes V_ap and V_ac, in order of discovery.
 
     They are placed by what is known of things (`tracks`), walls and the grid, which others fill.
-    `rule`: name of the rule that makes a repeated prediction surer. `ended`: what is expected no
-    more, and why.
+    `rule`: name of the rule that makes a repeated prediction surer; `faintest`: what is less
+    probable is not entered. `ended`: what is expected no more, and why.
     """
 
     def __init__(
-        self, rule: str, new_id: Ids, tracks: TrackIndex, bounds: BoundMerger, grid: GridBuilder
+        self,
+        rule: str,
+        faintest: float,
+        new_id: Ids,
+        tracks: TrackIndex,
+        bounds: BoundMerger,
+        grid: GridBuilder,
     ) -> None:
         self.ended: list[Ended] = []
         self._rule, self._update, self._new_id = rule, update_rule(rule), new_id
         self._tracks, self._bounds, self._grid = tracks, bounds, grid
-        self._index = PredictionIndex()
+        self._faintest = faintest
+        self._index, self._refuted = PredictionIndex(), PredictionIndex()
 
     def __iter__(self) -> Iterator[PredictedTrack]:
         return iter(self._index)
@@ -49,7 +56,7 @@ class Expectations:
         """Those that come true with a thing that is seen for sure; they expect nothing more."""
         extent = track.footprint.extent()
         near = self._index.near(*extent) if extent else []
-        fulfilled = [p for p in near if fits(p, track)]
+        fulfilled = [p for p in near if fits(p, track, self._bounds)]
         for prediction in fulfilled:
             self._end(prediction, PredictionState.CONFIRMED, view.stamp, track.id)
             at = view.stamp, view.index
@@ -90,7 +97,7 @@ class Expectations:
 
     def _fulfilled(self, prediction: PredictedTrack) -> bool:
         near = self._tracks.near(*prediction.place())
-        return any(fits(prediction, t) for t in near if is_kept(t))
+        return any(fits(prediction, t, self._bounds) for t in near if is_kept(t))
 
     def reinforce(self, expected: list[PredictedTrack], view: View) -> None:
         """Raise earlier predictions that this viewpoint makes again; add the new ones."""
@@ -101,17 +108,29 @@ class Expectations:
                 self._begin(prediction, view)
                 continue
             self._strengthen(old, prediction, view)
-            joined(old, prediction)
+            ratio = joined(old, prediction)
             self._index.put(old)
+            self._take_against(old, ChangeKind.SEEN_THROUGH, ratio, view)
             expected[i] = old
 
     def _begin(self, prediction: PredictedTrack, view: View) -> None:
-        prediction.id = self._new_id("predicted")
-        prediction.viewpoints.is_new(eye_of(view), prediction.center_xy)
+        """Enter what the axiom says, less what has been seen of the place already.
+
+        Looks that refuted the same once go on telling: it does not begin anew in the next view.
+        """
+        for refuted in self._refuted.like(prediction):
+            if refuted.axioms.keys() & prediction.axioms.keys():
+                prediction.where.takes_looks_of(refuted.where)
         prediction.life.rule = self._update
         at = view.stamp, view.index
         prediction.life.take(ChangeKind.PREDICTED, prediction.strength, *at, by=prediction.anchors)
-        self._index.put(prediction)
+        seen = prediction.where.open_share
+        if seen < 1 - TELLING:
+            prediction.life.take(ChangeKind.SEEN_THROUGH, seen, *at)
+        if prediction.probability >= self._faintest:
+            prediction.id = self._new_id("predicted")
+            prediction.viewpoints.is_new(eye_of(view), prediction.center_xy)
+            self._index.put(prediction)
 
     def _strengthen(self, old: PredictedTrack, new: PredictedTrack, view: View) -> None:
         """A distinct viewpoint counts for what is new in it.
@@ -155,6 +174,8 @@ class Expectations:
 
     def age(self, seconds: float, stamp: float, hazard: Callable[[PredictedTrack], float]) -> None:
         """Let time pass; `hazard`: the rate, 1/s, at which such things are taken away."""
+        if seconds >= HOUR_S:
+            self._refuted = PredictionIndex()
         for prediction in list(self._index):
             prediction.decayed = True
             left = aged(1.0, seconds, hazard(prediction))
@@ -177,8 +198,8 @@ class Expectations:
     def _take_against(
         self, prediction: PredictedTrack, kind: ChangeKind, ratio: float, view: View
     ) -> None:
-        if ratio < 1 - TELLING:
-            prediction.decayed = True
+        if abs(ratio - 1) > TELLING:
+            prediction.decayed |= ratio < 1
             prediction.life.take(kind, ratio, view.stamp, view.index)
         if prediction.probability < GONE_BELOW:
             self._end(prediction, PredictionState.REFUTED, view.stamp)
@@ -191,6 +212,8 @@ class Expectations:
         seen_as: str | None = None,
     ) -> None:
         self._index.remove(prediction)
+        if state is PredictionState.REFUTED:
+            self._refuted.put(prediction)
         before = prediction.life.history[-1].before if state is PredictionState.REFUTED else None
         probability = prediction.probability if before is None else before
         self.ended.append(Ended(prediction, state, stamp, probability, seen_as))

@@ -21,8 +21,6 @@ HEIGHT_TOLERANCE_M = 0.06
 KIND_OF_ORDER = {1: NodeKind.DUAL, 2: NodeKind.CO_OCCURRENCE}
 
 WALL_STEP_M = 0.05
-UNSEEN_FROM = 0.5
-"""Something as large as furniture may stand where this much of its outline has not been seen."""
 FURNITURE_M = 0.35
 """What is longer hides floor that scans and looks would show (the ontology's limit of `Small`)."""
 
@@ -116,21 +114,21 @@ def _near(
     anchor = _middle(anchors)
     where = Whereabouts.around(anchor, hypothesis.distance_m)
     if max(hypothesis.size_xy_m) >= FURNITURE_M:
-        where.prior *= _unseen(where.points_xy, hypothesis.size_xy_m, cells)
-        where.prior *= ~_something_between(anchor, _reach(anchors), where.points_xy, cells)
-    for index in np.flatnonzero(where.prior):
+        where.unseen = _unseen(where.points_xy, hypothesis.size_xy_m, cells)
+        where.density *= ~_something_between(anchor, _reach(anchors), where.points_xy, cells)
+    for index in np.flatnonzero(where.density):
         if walls.part(anchor, where.points_xy[index]):
-            where.prior[index] = 0.0
-    return where if where.prior.any() else None
+            where.density[index] = 0.0
+    return where if where.open_share > 0 else None
 
 
 def _unseen(points_xy: Array, size_xy_m: tuple[float, float], cells: KnownCells) -> Array:
-    """(N,) share of a thing's outline about each point that nobody has seen, 0 if too little."""
+    """(N,) share of a thing's outline about each point that nobody has seen."""
     half = np.maximum(np.asarray(size_xy_m), 0.2) / 2
     offsets = np.stack(np.meshgrid(*[np.linspace(-h, h, 5) for h in half]), axis=-1).reshape(-1, 2)
     samples = (points_xy[:, None] + offsets).reshape(-1, 2)
-    share = cells.unknown(samples).reshape(len(points_xy), -1).mean(axis=1)
-    return np.where(share > UNSEEN_FROM, share, 0.0)
+    share: Array = cells.unknown(samples).reshape(len(points_xy), -1).mean(axis=1)
+    return share
 
 
 def _something_between(

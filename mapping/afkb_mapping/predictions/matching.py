@@ -5,14 +5,22 @@ from __future__ import annotations
 import numpy as np
 
 from afkb.flow import NodeKind, Relation
-from afkb_mapping.predictions.grounding import BELOW_MARGIN_M, HEIGHT_TOLERANCE_M, HIDDEN_FOOT_M
+from afkb_mapping.predictions.grounding import (
+    BELOW_MARGIN_M,
+    HEIGHT_TOLERANCE_M,
+    HIDDEN_FOOT_M,
+    Walls,
+)
 from afkb_mapping.predictions.predicted_track import PredictedTrack
 from afkb_mapping.predictions.whereabouts import Whereabouts
 from afkb_mapping.things.tracks import ObservedTrack
 
 
-def fits(prediction: PredictedTrack, track: ObservedTrack) -> bool:
-    """Whether an observed thing is what was predicted: v_ao ~ v_ap (paper Algorithm 1)."""
+def fits(prediction: PredictedTrack, track: ObservedTrack, walls: Walls) -> bool:
+    """Whether an observed thing is what was predicted: v_ao ~ v_ap (paper Algorithm 1).
+
+    What is near something has no wall between, and its middle within reach.
+    """
     if any(track.affordances.get(name, 0.0) < 0.5 for name in prediction.affordances):
         return False
     if track.id in prediction.anchors or track.is_floor:
@@ -23,7 +31,10 @@ def fits(prediction: PredictedTrack, track: ObservedTrack) -> bool:
     points = track.footprint.points()
     if prediction.near_xy is not None:
         apart = np.linalg.norm(points - prediction.near_xy, axis=1)
-        return bool(apart.min() <= prediction.reach_m)
+        nearest = int(apart.argmin())
+        if apart[nearest] > prediction.reach_m - min(prediction.size_xy_m) / 2:
+            return False
+        return not walls.part(prediction.near_xy, points[nearest])
     at_least, at_most = prediction.place()
     return bool(((points >= at_least) & (points <= at_most)).all(1).any())
 
@@ -55,13 +66,16 @@ def _of_two_orders(first: PredictedTrack, second: PredictedTrack) -> bool:
     return level and bool(apart <= near.reach_m)
 
 
-def joined(old: PredictedTrack, new: PredictedTrack) -> None:
+def joined(old: PredictedTrack, new: PredictedTrack) -> float:
     """Let a prediction that was made again know the place that both give it.
+
+    Returns the likelihood ratio, at most 1, of what has been seen of that place meanwhile.
 
     A region under things covers all of them; of a region near things the middle is the mean (paper
     Algorithm 1: c = mean(c, c_k-1)). Of two orders the lower one says where: the levels of
     filtration are of falling importance (§II.D).
     """
+    before = old.where.open_share
     if old.kind is NodeKind.DUAL and new.kind is NodeKind.CO_OCCURRENCE:
         pass
     elif old.kind is not new.kind:
@@ -81,6 +95,7 @@ def joined(old: PredictedTrack, new: PredictedTrack) -> None:
     old.anchors.update(new.anchors)
     old.axioms.update(new.axioms)
     old.last_seen = new.last_seen
+    return min(old.where.open_share / before, 1.0)
 
 
 def _move(old: PredictedTrack, where: Whereabouts) -> None:
