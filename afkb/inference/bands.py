@@ -30,12 +30,13 @@ def normal_bands(mean: float, sd: float, edges: Array) -> Array:
     return np.diff(cumulative)
 
 
-def size_bands(low_m: float, high_m: float, spread: float, noise: float) -> Array:
+def size_bands(low_m: float, high_m: float, spread: float, noise: float, blur_m: float) -> Array:
     """Probability of each size band for a typical range, m: log-normal, its ends `spread` sd off.
 
-    `noise`: standard deviation of the logarithm of one measurement.
+    `noise`: standard deviation of the logarithm of one measurement, which is on average longer by
+    `blur_m`.
     """
-    low, high = math.log(low_m), math.log(high_m)
+    low, high = math.log(low_m + blur_m), math.log(high_m + blur_m)
     sd = math.hypot((high - low) / (2.0 * spread), noise)
     return _smoothed(normal_bands((low + high) / 2.0, sd, np.log(SIZE_EDGES_M)))
 
@@ -44,6 +45,14 @@ def top_bands(low_m: float, high_m: float, spread: float, noise_m: float) -> Arr
     """Probability of each band of the height of a top, for a typical range, m: normal."""
     sd = math.hypot((high_m - low_m) / (2.0 * spread), noise_m)
     return _smoothed(normal_bands((low_m + high_m) / 2.0, sd, TOP_EDGES_M))
+
+
+def board_bands(highest_m: float, noise_m: float) -> Array:
+    """Probability of each band of the height of a board of furniture that is so high, m: even."""
+    below = np.clip(
+        (highest_m + noise_m - np.array([0.0, *TOP_EDGES_M])) / TOP_EDGES_M[0], 0.0, 1.0
+    )
+    return _smoothed(below / below.sum())
 
 
 def even_bands(edges: Array) -> Array:

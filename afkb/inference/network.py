@@ -13,6 +13,7 @@ from afkb.errors import EvidenceError
 from afkb.inference.bands import Array
 from afkb.inference.contents import ContentsNetwork
 from afkb.inference.holdings import Stated
+from afkb.inference.joint import JointNetwork
 from afkb.inference.objects import ObjectNetwork
 from afkb.inference.relations import RelationshipNetwork
 from afkb.inference.rooms import RoomNetwork
@@ -71,6 +72,11 @@ class Network:
                 for name in feature.parameters
             )
         )
+
+    @cached_property
+    def joint(self) -> JointNetwork:
+        """The network of all things of a room together, with the room and what carries them."""
+        return JointNetwork.compile(self.knowledge_base, self.objects)
 
     def category_posterior(
         self,

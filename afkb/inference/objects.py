@@ -9,19 +9,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from afkb.errors import EvidenceError
-from afkb.inference.bands import (
-    SIZE_EDGES_M,
-    TOP_EDGES_M,
-    Array,
-    band_of,
-    even_bands,
-    size_bands,
-    top_bands,
+from afkb.inference.bands import SIZE_EDGES_M, TOP_EDGES_M, Array, band_of
+from afkb.inference.object_tables import (
+    HEIGHT,
+    LENGTH,
+    TOP,
+    WIDTH,
+    broader_features,
+    features,
+    measures,
 )
-from afkb.knowledge import SOMETHING_ELSE, AfNet, Category
+from afkb.knowledge import AfNet
 
 SUPPORT = "SupportAbility"
-LENGTH, WIDTH, HEIGHT, TOP = "Length", "Width", "Height", "TopHeight"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,9 +49,9 @@ class ObjectNetwork:
         return cls(
             categories=names,
             prior=prior,
-            features=_features(kb, prior),
-            measures=_measures(kb),
-            implied={name: _broader(kb, name) for name in kb.features},
+            features=features(kb, prior),
+            measures=measures(kb),
+            implied={name: broader_features(kb, name) for name in kb.features},
         )
 
     def observed(
@@ -145,13 +145,7 @@ class ObjectNetwork:
         whole: bool = True,
     ) -> Array:
         """`posterior` as an array (C,), in the order of `categories`."""
-        likelihoods, bands = self.observed(affordances, size_xyz, top_height_m)
-        weights = self.prior.copy()
-        for name, p in likelihoods.items():
-            weights *= p * self.features[name] + (1.0 - p) * (1.0 - self.features[name])
-        for name, band in bands.items():
-            larger = slice(band, None if name in (LENGTH, WIDTH) and not whole else band + 1)
-            weights *= self.measures[name][larger].sum(axis=0)
+        weights = self.prior * self.likelihood(affordances, size_xyz, top_height_m, whole)
         total = float(weights.sum())
         if not total > 0:
             raise EvidenceError(
@@ -161,55 +155,19 @@ class ObjectNetwork:
         shares: Array = weights / total
         return shares
 
-
-def _features(kb: AfNet, prior: Array) -> dict[str, Array]:
-    afbits = [_inherited(kb, c) for c in kb.categories.values()]
-    used = sorted({f for bits in afbits for f in bits if kb.features[f].kind != "grasp"})
-    leak, breadth = kb.parameters["AfbitLeak"], kb.parameters["UnknownBreadth"]
-    other = np.array([name == SOMETHING_ELSE for name in kb.categories])
-    known_prior = np.where(other, 0.0, prior)
-    features: dict[str, Array] = {}
-    for name in used:
-        column = np.array([bits.get(name, leak) for bits in afbits])
-        if known_prior.sum() > 0:
-            mean = float(column @ known_prior / known_prior.sum())
-            column[other] = (1.0 - breadth) * mean + breadth * 0.5
-        features[name] = column
-    return features
-
-
-def _inherited(kb: AfNet, category: Category) -> dict[str, float]:
-    """How often each feature is reported: the category's rates, else its afbits, else inherited."""
-    bits: dict[str, float] = {}
-    for name in kb.kinds_of(category.name):
-        if name in kb.categories:
-            kind = kb.categories[name]
-            bits = {**kind.afbits, **kind.report_rates, **bits}
-    return bits
-
-
-def _measures(kb: AfNet) -> dict[str, Array]:
-    spread, noise = kb.parameters["SizeSpread"], kb.parameters["SizeNoise"]
-    height_noise = kb.parameters["HeightNoise"]
-    categories = kb.categories.values()
-    columns = {
-        LENGTH: [size_bands(*c.length_m, spread, noise) for c in categories],
-        WIDTH: [size_bands(*c.width_m, spread, noise) for c in categories],
-        HEIGHT: [size_bands(*c.height_m, spread, noise) for c in categories],
-        TOP: [
-            top_bands(*c.top_height_m, spread, height_noise)
-            if c.top_height_m is not None
-            else even_bands(TOP_EDGES_M)
-            for c in categories
-        ],
-    }
-    return {name: np.array(bands).T for name, bands in columns.items()}
-
-
-def _broader(kb: AfNet, name: str) -> frozenset[str]:
-    found: list[str] = []
-    broader = kb.features[name].broader
-    while broader is not None:
-        found.append(broader)
-        broader = kb.features[broader].broader
-    return frozenset(found)
+    def likelihood(
+        self,
+        affordances: Mapping[str, float],
+        size_xyz: tuple[float, float, float],
+        top_height_m: float,
+        whole: bool = True,
+    ) -> Array:
+        """P(what was seen of a thing | category), (C,), but for a factor that all share."""
+        likelihoods, bands = self.observed(affordances, size_xyz, top_height_m)
+        weights = np.ones(len(self.categories))
+        for name, p in likelihoods.items():
+            weights *= p * self.features[name] + (1.0 - p) * (1.0 - self.features[name])
+        for name, band in bands.items():
+            larger = slice(band, None if name in (LENGTH, WIDTH) and not whole else band + 1)
+            weights *= self.measures[name][larger].sum(axis=0)
+        return weights

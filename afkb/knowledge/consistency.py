@@ -13,14 +13,18 @@ if TYPE_CHECKING:
 
 PARAMETERS = (
     "AfbitLeak",
+    "BoardsSeen",
     "FaintestHypothesis",
     "HeightNoise",
     "ShareSeenHalf",
     "ShareSeenLittle",
     "ShareSeenMost",
+    "SizeBlur",
     "SizeNoise",
     "SizeSpread",
+    "StandsAsTypical",
     "StrayShare",
+    "SupportSeen",
     "UnknownBreadth",
     "UnknownRoomBreadth",
 )

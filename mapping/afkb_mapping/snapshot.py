@@ -32,6 +32,7 @@ from afkb_mapping.rooms.lookup import RoomLookup, room_id
 from afkb_mapping.rooms.rooms import Segmentation, divide_by_purpose, segment_rooms
 from afkb_mapping.rooms.two_purposes import second_purpose
 from afkb_mapping.things.entities import observed_entities
+from afkb_mapping.things.recognition import CountsOf, recognised
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.visits.bounds_now import bound_now, doorway_now
 from afkb_mapping.way_lengths import way_lengths
@@ -82,6 +83,7 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
         )
         for e in entities
     ]
+    entities = recognised(entities, _counts_by_room(segmentation, evidence), content.network)
     places = [_robot_place(p, lookup) for p in content.places]
     now = max((stamp for stamp, _ in content.trajectory), default=0.0)
     standing = [bound_now(b, content.grid, now) for b in content.bounds]
@@ -121,6 +123,13 @@ def _parted(
     evidence = RoomEvidence(content.network, entities, content.looked_from, rooms.labels, grid)
     prior = content.network.room_posterior({})
     return divide_by_purpose(rooms, grid, evidence.purpose, prior), evidence
+
+
+def _counts_by_room(segmentation: Segmentation, evidence: RoomEvidence) -> CountsOf:
+    """What is counted in each room, by the room's id; nothing in no room."""
+    labels = segmentation.labels
+    counts = {room_id(r.label): evidence.counts(labels == r.label) for r in segmentation.rooms}
+    return lambda room: counts.get(room or "", {})
 
 
 def _notes(observed: Sequence[Entity]) -> Iterator[str]:

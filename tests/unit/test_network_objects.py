@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from afkb.errors import EvidenceError
 from afkb.inference import Network
-from afkb.inference.objects import LENGTH, WIDTH
+from afkb.inference.object_tables import LENGTH, WIDTH
 from afkb.inference.pgm import CATEGORY, NO_YES, band_states, object_model
 from afkb.knowledge import AfNet
 from ontology_samples import Copy, extension
@@ -35,8 +35,8 @@ def best(posterior: dict[str, float]) -> str:
         ("SupportAbility", (2.0, 1.5, 0.5), 0.5, {"Bed"}),
         ("SupportAbility", (2.0, 0.6, 0.02), 0.93, {"Counter"}),
         ("SupportAbility", (2.1, 0.6, 0.1), 0.44, {"Couch"}),
-        ("SupportAbility", (0.8, 0.25, 0.02), 1.4, {"Shelf"}),
-        ("ContainAbility", (0.08, 0.08, 0.09), 0.82, {"Mug", "Cup"}),
+        ("SupportAbility", (0.8, 0.25, 0.02), 1.4, {"Shelf", "WallShelf"}),
+        ("ContainAbility", (0.11, 0.11, 0.09), 0.82, {"Mug", "Cup"}),
         ("ContainAbility", (0.18, 0.18, 0.08), 0.82, {"Bowl"}),
         ("ContainAbility", (0.4, 0.35, 0.55), 0.55, {"TrashCan"}),
         ("IntrinsicContainAbility", (0.08, 0.08, 0.26), 1.0, {"Bottle"}),

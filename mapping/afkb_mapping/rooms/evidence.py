@@ -42,7 +42,7 @@ class RoomEvidence:
         self._things, off_m = _nearest(things, labels, grid)
         self._eyes, _ = _nearest(eyes, labels, grid)
         self._evidence = [
-            _evidence_of(e, network) if off <= REACH_M else ()
+            evidence_of(e, network) if off <= REACH_M else ()
             for e, off in zip(observed, off_m.tolist(), strict=True)
         ]
 
@@ -87,6 +87,7 @@ def _nearest(
     return np.moveaxis(indices, 0, -1)[rows, cols], off * grid.resolution_m
 
 
-def _evidence_of(entity: Entity, network: Network) -> tuple[str, ...]:
+def evidence_of(entity: Entity, network: Network) -> tuple[str, ...]:
+    """Names of the evidence classes that a thing counts for."""
     known = network.known(entity.affordances)
     return network.evidence_of(known, entity.size_xyz, entity.top_m)
