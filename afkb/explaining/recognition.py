@@ -20,7 +20,7 @@ from afkb.explaining.reading import StoredThing
 from afkb.explaining.source import Source, of_feature, of_measure, of_prior
 from afkb.inference import Network
 from afkb.inference.bands import SIZE_EDGES_M, TOP_EDGES_M
-from afkb.inference.objects import LENGTH, TOP, WIDTH
+from afkb.inference.object_tables import LENGTH, TOP, WIDTH
 from afkb.knowledge import AfNet
 
 
