@@ -14,6 +14,7 @@ from afkb.flow import Doorway, Room, TopologicalMap
 from afkb.knowledge import AfNet
 from afkb.testing import sample_map
 from afkb_mapping.rooms.opinions import with_opinions
+from afkb_room_categories.classifier import CategoryClassifier
 from afkb_room_shape.classifier import ShapeClassifier
 from afkb_room_shape.shape import Shape, shape_of
 
@@ -98,3 +99,38 @@ def test_its_figures_are_read_from_the_table(knowledge_base: AfNet, tmp_path: Pa
     )
     belief = ShapeClassifier(knowledge_base, table).posterior(Shape(9.0, 1, 4, 1.0))
     assert belief["Kitchen"] > belief["Bedroom"]
+
+
+def with_things(categories: list[dict[str, float]]) -> TopologicalMap:
+    """The sample's room, with things of these category beliefs in it and nothing counted."""
+    plain = sample_map()
+    thing = replace(plain.entities[0], room="room-1", existence=1.0)
+    entities = [replace(thing, id=f"t{i}", category_belief=c) for i, c in enumerate(categories)]
+    return replace(plain, entities=tuple(entities))
+
+
+def test_recognised_things_tell_what_a_room_is_for(knowledge_base: AfNet) -> None:
+    classifier = CategoryClassifier(knowledge_base)
+    bare = classifier.beliefs(with_things([]))["room-1"]
+    toilet = classifier.beliefs(with_things([{"Toilet": 0.9, "Chair": 0.1}]))["room-1"]
+    assert toilet["Bathroom"] > 2 * bare["Bathroom"]
+
+
+@pytest.mark.parametrize("belief", [{"Toilet": 0.4, "Chair": 0.3}, {"SomethingElse": 0.9}, {}])
+def test_a_thing_that_could_be_several_is_none(
+    knowledge_base: AfNet, belief: dict[str, float]
+) -> None:
+    classifier = CategoryClassifier(knowledge_base)
+    bare = classifier.beliefs(with_things([]))["room-1"]
+    assert classifier.beliefs(with_things([belief]))["room-1"] == pytest.approx(bare)
+
+
+def test_a_recognised_thing_is_not_counted_by_its_class_as_well(knowledge_base: AfNet) -> None:
+    found = with_things([{"Bed": 0.9}])
+    bed = replace(found.entities[0], affordances={"SupportAbility": 0.95}, size_xyz=(2.0, 1.5, 0.1))
+    bed = replace(bed, position_xyz=(1.0, 0.0, 0.5))
+    counted = replace(found.rooms[0], evidence={"BedSupport": 1})
+    classifier = CategoryClassifier(knowledge_base)
+    both = classifier.beliefs(replace(found, entities=(bed,), rooms=(counted,)))
+    once = classifier.beliefs(replace(found, entities=(bed,)))
+    assert both["room-1"] == pytest.approx(once["room-1"])
