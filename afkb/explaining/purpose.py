@@ -7,18 +7,17 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from afkb.explaining.chain import Array, Belief, Chain, Row, WhatIf, if_otherwise
-from afkb.explaining.reading import StoredThing
 from afkb.explaining.source import Source, of_count, of_room_prior
+from afkb.flow import Entity
 from afkb.inference import Network
+from afkb.inference.recognition import evidence_of
 
 Counts = Mapping[str, int]
 FAINTEST = 1e-12
 """A belief below this is taken as this where the belief that it became is compared with it."""
 
 
-def purpose(
-    network: Network, counts: Counts, stored: Belief, things: Sequence[StoredThing]
-) -> Chain:
+def purpose(network: Network, counts: Counts, stored: Belief, things: Sequence[Entity]) -> Chain:
     """The chain from the rooms of a home to what the room is for.
 
     How much of a room was seen is hidden in the network, so that each row is the likelihood of a
@@ -38,11 +37,6 @@ def purpose(
     return Chain(states, prior, chain.prior_sources, chain.rows, stored, what_if)
 
 
-def counted_for(network: Network, thing: StoredThing) -> tuple[str, ...]:
-    """The evidence classes that a thing counts for."""
-    return network.evidence_of(network.known(thing.affordances), thing.size_xyz, thing.top_m)
-
-
 def _shares(network: Network, counts: Counts, states: Sequence[str]) -> Array:
     posterior = network.room_posterior(counts)
     return np.array([posterior[state] for state in states])
@@ -59,11 +53,11 @@ def _row(network: Network, name: str, count: int, likelihood: Array) -> Row:
     return Row(name, observed, likelihood / likelihood.max(), sources)
 
 
-def _otherwise(network: Network, counts: Counts, things: Sequence[StoredThing]) -> Iterator[WhatIf]:
+def _otherwise(network: Network, counts: Counts, things: Sequence[Entity]) -> Iterator[WhatIf]:
     """Without each thing, with one more of each class, and with each class not looked for."""
     before = network.room_posterior(counts)
     for thing in things:
-        for_classes = counted_for(network, thing)
+        for_classes = evidence_of(thing, network)
         fewer = {n: c - (n in for_classes) for n, c in counts.items()}
         if fewer != dict(counts) and all(c >= 0 for c in fewer.values()):
             what = f"without {thing.id}, which counts as {' and '.join(for_classes)}"

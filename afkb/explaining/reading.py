@@ -2,50 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-
 from pyoxigraph import NamedNode
 
-from afkb.flow import Change, ChangeKind, Sighting
+from afkb.flow import Change, ChangeKind, Entity, NodeKind, Sighting
 from afkb.store import StoredMap
 from afkb.store.vocabulary import local_name
 
 AFFORDS_FROM = 0.5
 
 
-@dataclass(frozen=True, slots=True)
-class StoredThing:
-    """A thing as the map states it: what the networks take in, m; ids of support and room."""
+def entities_of(stored: StoredMap) -> dict[str, Entity]:
+    """Id to what the map states of each thing, seen or predicted."""
+    kinds = (NodeKind.OBSERVED, NodeKind.DUAL, NodeKind.CO_OCCURRENCE)
+    found = (entity_at(stored, n, kind) for kind in kinds for n in stored.instances(kind.value))
+    return {entity.id: entity for entity in found}
 
-    id: str
-    affordances: Mapping[str, float]
-    size_xyz: tuple[float, float, float]
-    top_m: float
-    whole: bool
-    existence: float
-    categories: Mapping[str, float]
-    supported_by: str | None
-    room: str | None
 
-    @classmethod
-    def read(cls, stored: StoredMap, node: NamedNode) -> StoredThing:
-        """The thing at a node."""
-        length, width, height = (stored.number(node, f"afn:size{axis}") for axis in "XYZ")
-        affordances = stored.belief(node, "affordance", "affordance")
-        z = stored.number(node, "afn:z")
-        supports = affordances.get("SupportAbility", 0.0) >= AFFORDS_FROM
-        return cls(
-            id=local_name(node.value),
-            affordances=affordances,
-            size_xyz=(length, width, height),
-            top_m=stored.number(node, "afn:topHeight", z if supports else z + height / 2),
-            whole=stored.name(node, "afn:extentKnown") != "false",
-            existence=stored.number(node, "afn:existence", 1.0),
-            categories=stored.belief(node, "category", "category"),
-            supported_by=stored.name(node, "afn:supportedBy"),
-            room=stored.name(node, "afn:inRoom"),
-        )
+def entity_at(stored: StoredMap, node: NamedNode, kind: NodeKind) -> Entity:
+    """A thing as the map states it; of its position the height is what its top leaves."""
+    width, depth, height = (stored.number(node, f"afn:size{axis}") for axis in "XYZ")
+    affordances = stored.belief(node, "affordance", "affordance")
+    z = stored.number(node, "afn:z")
+    if affordances.get("SupportAbility", 0.0) < AFFORDS_FROM:
+        z = stored.number(node, "afn:topHeight", z + height / 2) - height / 2
+    return Entity(
+        id=local_name(node.value),
+        kind=kind,
+        position_xyz=(stored.number(node, "afn:x"), stored.number(node, "afn:y"), z),
+        size_xyz=(width, depth, height),
+        yaw=stored.number(node, "afn:yaw"),
+        affordances=affordances,
+        existence=stored.number(node, "afn:existence", 1.0),
+        category_belief=stored.belief(node, "category", "category"),
+        movability=stored.name(node, "afn:movability") or "Static",
+        matching_weight=stored.number(node, "afn:matchingWeight", 1.0),
+        observations=int(stored.number(node, "afn:observations")),
+        first_seen=stored.number(node, "afn:firstSeen"),
+        last_seen=stored.number(node, "afn:lastSeen"),
+        seen_from=tuple(stored.names(node, "afn:seenFrom")),
+        generated_by=tuple(_makers(stored, node)),
+        supported_by=stored.name(node, "afn:supportedBy"),
+        part_of=stored.name(node, "afn:partOf"),
+        room=stored.name(node, "afn:inRoom"),
+        extent_known=stored.name(node, "afn:extentKnown") != "false",
+    )
+
+
+def counts_by_room(stored: StoredMap) -> dict[str, dict[str, int]]:
+    """Room to what the map counted in it."""
+    return {local_name(n.value): counts_of(stored, n) for n in stored.instances("Room")}
 
 
 def sightings_of(stored: StoredMap, node: NamedNode) -> list[Sighting]:
@@ -80,7 +85,7 @@ def _sighting(stored: StoredMap, node: NamedNode) -> Sighting:
     return Sighting(
         view=int(stored.number(node, "afn:viewIndex")),
         stamp=stored.number(node, "afn:stamp"),
-        detectors=tuple(n.removeprefix("by-") for n in stored.names(node, "prov:wasGeneratedBy")),
+        detectors=tuple(_makers(stored, node)),
         n_pixels=int(stored.number(node, "afn:pixels")),
         range_m=stored.number(node, "afn:range"),
         image_box=(box[0], box[1], box[2], box[3]) if len(box) == 4 else None,
@@ -100,3 +105,9 @@ def _change(stored: StoredMap, node: NamedNode) -> Change:
         view=int(view[0].value) if view else None,
         by=tuple(stored.names(node, "afn:byEntity")),
     )
+
+
+def _makers(stored: StoredMap, node: NamedNode) -> list[str]:
+    """The detectors or predictors that something was made by."""
+    names = stored.names(node, "prov:wasGeneratedBy")
+    return [name.removeprefix("by-") for name in names if name.startswith("by-")]

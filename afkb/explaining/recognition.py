@@ -1,8 +1,9 @@
-"""Why a thing is held for what it is: what it affords and measures, row by row of the network."""
+"""Why a thing is held for what it is: the chain of the network's rows, and what else would say."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,72 +17,63 @@ from afkb.explaining.chain import (
     left_out,
     normalised,
 )
-from afkb.explaining.reading import StoredThing
-from afkb.explaining.source import Source, of_feature, of_measure, of_prior
+from afkb.explaining.rows import own_rows
+from afkb.explaining.source import of_prior
+from afkb.explaining.surroundings import surrounding_rows
+from afkb.flow import Entity
 from afkb.inference import Network
-from afkb.inference.bands import SIZE_EDGES_M, TOP_EDGES_M
-from afkb.inference.object_tables import LENGTH, TOP, WIDTH
-from afkb.knowledge import AfNet
+from afkb.inference.joint import SeenThing
+from afkb.inference.recognition import standing_together
+
+Counts = Mapping[str, Mapping[str, int]]
+"""Room to what was counted in it."""
 
 
-def recognition(network: Network, thing: StoredThing) -> Chain:
-    """The chain from the shares of categories in a home to what the thing is held for."""
+def recognition(
+    network: Network, entity: Entity, entities: Sequence[Entity], counts: Counts
+) -> Chain:
+    """The chain from the shares of categories in a home to what a seen thing is held for.
+
+    `entities`: all of the map, of which some carry others; `counts`: of its rooms.
+    """
+    groups = standing_together(entities, lambda room: counts.get(room or "", {}), network)
+    together = next(t for t in groups if any(e.id == entity.id for e in t.entities))
+    at = next(i for i, e in enumerate(together.entities) if e.id == entity.id)
+    rows = [
+        *own_rows(network, together.things[at]),
+        *surrounding_rows(network, together, at),
+    ]
+    return _chain(network, rows, together.things[at], entity)
+
+
+def expectation(network: Network, entity: Entity, relation: str) -> Chain:
+    """The same of a prediction: by what it would afford, and how high and large it would be.
+
+    How far what is below or on its anchors reaches is unobserved.
+    """
+    width, depth, _ = entity.size_xyz
+    size = (width, depth, 0.0) if relation == "near" else (0.0, 0.0, 0.0)
+    thing = SeenThing(network.known(entity.affordances), size, entity.position_xyz[2])
+    return _chain(network, own_rows(network, thing), thing, entity)
+
+
+def _chain(network: Network, rows: Sequence[Row], thing: SeenThing, entity: Entity) -> Chain:
     kb, objects = network.knowledge_base, network.objects
-    known = network.known(thing.affordances)
-    features, bands = objects.observed(known, thing.size_xyz, thing.top_m)
-    rows = [_feature_row(network, name, p) for name, p in features.items()]
-    rows += [_measure_row(network, thing, name, band) for name, band in bands.items()]
     chain = Chain(
         states=objects.categories,
         prior=objects.prior,
         prior_sources=lambda category: (of_prior(kb, category),),
         rows=tuple(rows),
-        stored=thing.categories,
+        stored=entity.category_belief,
     )
-    what_if = (*left_out(chain), *_if_looked_for(network, chain, features))
-    return Chain(chain.states, chain.prior, chain.prior_sources, chain.rows, chain.stored, what_if)
+    return replace(chain, what_if=(*left_out(chain), *_if_looked_for(network, chain, thing)))
 
 
-def _feature_row(network: Network, name: str, p: float) -> Row:
-    kb = network.knowledge_base
-    reported = network.objects.features[name]
-    return Row(
-        name=name,
-        observed=f"{p:.2f}",
-        likelihood=p * reported + (1.0 - p) * (1.0 - reported),
-        sources=lambda category: _some(of_feature(kb, category, name)),
-    )
-
-
-def _measure_row(network: Network, thing: StoredThing, name: str, band: int) -> Row:
-    kb: AfNet = network.knowledge_base
-    at_least = name in (LENGTH, WIDTH) and not thing.whole
-    larger = slice(band, None if at_least else band + 1)
-    return Row(
-        name=name,
-        observed=_between(name, band, at_least),
-        likelihood=np.asarray(network.objects.measures[name][larger].sum(axis=0)),
-        sources=lambda category: (of_measure(kb, category, name),),
-    )
-
-
-def _between(name: str, band: int, at_least: bool) -> str:
-    edges = TOP_EDGES_M if name == TOP else SIZE_EDGES_M
-    if band == 0:
-        return f"under {edges[0]:.2f} m"
-    if at_least or band == len(edges):
-        return f"{edges[band - 1]:.2f} m or more"
-    return f"{edges[band - 1]:.2f} to {edges[band]:.2f} m"
-
-
-def _some(source: Source | None) -> tuple[Source, ...]:
-    return () if source is None else (source,)
-
-
-def _if_looked_for(network: Network, chain: Chain, observed: dict[str, float]) -> Iterator[WhatIf]:
+def _if_looked_for(network: Network, chain: Chain, thing: SeenThing) -> Iterator[WhatIf]:
     """What a look for each further feature would change, seen or missed, were it certain."""
     posterior = chain.posterior
     now = np.array([posterior[state] for state in chain.states])
+    observed = thing.affordances
     implied = {b for f, p in observed.items() if p > 0.5 for b in network.objects.implied[f]}
     for name, reported in network.objects.features.items():
         if name in observed or name in implied or not network.known({name: 1.0}):

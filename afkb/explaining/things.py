@@ -9,46 +9,54 @@ from pyoxigraph import NamedNode
 
 from afkb.explaining.explanation import Explanation, Ground
 from afkb.explaining.life import life_of
-from afkb.explaining.purpose import counted_for, purpose
-from afkb.explaining.reading import StoredThing, counts_of, sightings_of
-from afkb.explaining.recognition import recognition
+from afkb.explaining.purpose import purpose
+from afkb.explaining.reading import (
+    counts_by_room,
+    counts_of,
+    entities_of,
+    entity_at,
+    sightings_of,
+)
+from afkb.explaining.recognition import expectation, recognition
 from afkb.explaining.source import Source, of_statement
+from afkb.flow import Entity, NodeKind
 from afkb.inference import Network
+from afkb.inference.recognition import evidence_of, is_floor
 from afkb.knowledge import AfNet
 from afkb.knowledge.model import CoOccurrence, Dual
 from afkb.store import StoredMap
 from afkb.store.vocabulary import local_name
 
-FLOOR = {"Floor": 1.0}
 ROUNDING = 1e-6
 """A recomputed probability that is further off than what the map rounds to is told of."""
 
 
 def explain_thing(stored: StoredMap, node: NamedNode, network: Network) -> Explanation:
     """A thing that was seen: its sightings, its existence, and what it is."""
-    thing = StoredThing.read(stored, node)
+    entities = entities_of(stored)
+    thing = entities[local_name(node.value)]
     facts = {
         "size": " × ".join(f"{v:.2f}" for v in thing.size_xyz) + " m",
         "its top": f"{thing.top_m:.2f} m above the floor",
         "affords": _probabilities(thing.affordances),
     }
-    if not thing.whole:
+    if not thing.extent_known:
         facts["extent"] = "not known: at least as long and wide as it looks"
-    told = f"seen, {_where(thing)}; held for {_probabilities(thing.categories, 3)}"
+    told = f"seen, {_where(thing)}; held for {_probabilities(thing.category_belief, 3)}"
     explanation = Explanation(
         id=thing.id,
         kind="ObservedEntity",
         told=told,
         facts=facts,
         sightings=tuple(sightings_of(stored, node)),
-        views=int(stored.number(node, "afn:observations")),
+        views=thing.observations,
         life=life_of(stored, node),
         grounds=tuple(_predicted_before(stored, node, network.knowledge_base)),
     )
-    if dict(thing.categories) == FLOOR:
+    if is_floor(thing):
         note = "the lowest level surface, on which everything stands: no network infers that"
         return replace(explanation, notes=(note,))
-    chain = recognition(network, thing)
+    chain = recognition(network, thing, list(entities.values()), counts_by_room(stored))
     return replace(explanation, about="what it is", chain=chain)
 
 
@@ -79,21 +87,19 @@ def explain_prediction(
     )
     if past:
         return explanation
-    thing = _expected(StoredThing.read(stored, node), relation)
-    return replace(explanation, about="what it would be", chain=recognition(network, thing))
-
-
-def _expected(thing: StoredThing, relation: str) -> StoredThing:
-    """What the network takes in of a prediction: of what is below or on things no extent."""
-    width, depth, _ = thing.size_xyz
-    size = (width, depth, 0.0) if relation == "near" else (0.0, 0.0, 0.0)
-    return replace(thing, size_xyz=size, whole=True)
+    thing = entity_at(stored, node, NodeKind(kind))
+    chain = expectation(network, thing, relation)
+    return replace(explanation, about="what it would be", chain=chain)
 
 
 def explain_room(stored: StoredMap, node: NamedNode, network: Network) -> Explanation:
     """A room: what was counted in it, what counts, and what it is for."""
     id_ = local_name(node.value)
-    things = [t for t in _observed(stored) if t.room == id_]
+    things = [
+        t
+        for t in entities_of(stored).values()
+        if t.room == id_ and t.kind is NodeKind.OBSERVED and not is_floor(t)
+    ]
     counts, notes = counts_of(stored, node), []
     if not counts and things:
         notes.append("the map does not state what was counted; counted again, from its things")
@@ -102,7 +108,7 @@ def explain_room(stored: StoredMap, node: NamedNode, network: Network) -> Explan
     counting = [
         Ground(t.id, f"counts as {' and '.join(classes)}")
         for t in things
-        if (classes := counted_for(network, t))
+        if (classes := evidence_of(t, network))
     ]
     visited = "stood in it" if stored.name(node, "afn:visited") == "true" else "looked into it"
     return Explanation(
@@ -117,20 +123,15 @@ def explain_room(stored: StoredMap, node: NamedNode, network: Network) -> Explan
     )
 
 
-def _observed(stored: StoredMap) -> list[StoredThing]:
-    found = [StoredThing.read(stored, n) for n in stored.instances("ObservedEntity")]
-    return [t for t in found if dict(t.categories) != FLOOR]
-
-
-def _counted_again(network: Network, things: Sequence[StoredThing]) -> dict[str, int]:
+def _counted_again(network: Network, things: Sequence[Entity]) -> dict[str, int]:
     found: dict[str, int] = {}
     for thing in things:
-        for name in counted_for(network, thing):
+        for name in evidence_of(thing, network):
             found[name] = found.get(name, 0) + 1
     return found
 
 
-def _where(thing: StoredThing) -> str:
+def _where(thing: Entity) -> str:
     on = f"on {thing.supported_by}" if thing.supported_by else "on nothing that was seen"
     return f"{on}, in {thing.room or 'no room'}"
 

@@ -19,6 +19,7 @@ from afkb.flow import (
     TopologicalMap,
 )
 from afkb.inference import Network
+from afkb.inference.recognition import CountsOf
 from afkb_mapping.doorways.merger import DoorwayMerger, SeenDoorway
 from afkb_mapping.edges import edges_of
 from afkb_mapping.grid.occupancy import rasterised
@@ -32,7 +33,7 @@ from afkb_mapping.rooms.lookup import RoomLookup, room_id
 from afkb_mapping.rooms.rooms import Segmentation, divide_by_purpose, segment_rooms
 from afkb_mapping.rooms.two_purposes import second_purpose
 from afkb_mapping.things.entities import observed_entities
-from afkb_mapping.things.recognition import CountsOf, recognised
+from afkb_mapping.things.recognition import recognised
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.visits.bounds_now import bound_now, doorway_now
 from afkb_mapping.way_lengths import way_lengths

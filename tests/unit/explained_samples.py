@@ -10,6 +10,7 @@ import numpy as np
 from afkb.flow import Change, ChangeKind, Entity, NodeKind, Region, Relation, Sighting
 from afkb.inference import Network, network_of
 from afkb.inference.existence import folded
+from afkb.inference.recognition import standing_together
 from afkb.knowledge import AfNet
 from afkb.store import StoredMap, load, write_map
 from afkb.store.made_with import ontology_record
@@ -25,12 +26,20 @@ LIFE = (
 )
 
 
-def believed(network: Network, thing: Entity) -> Entity:
-    """The thing as the network recognises it."""
-    known = network.known(thing.affordances)
-    at = (known, thing.size_xyz, thing.top_m, thing.extent_known)
-    if thing.region is not None:
-        at = (known, (*thing.size_xyz[:2], 0.0), thing.top_m, True)
+def believed(network: Network, things: list[Entity], counts: dict[str, int]) -> list[Entity]:
+    """The things as the network recognises them, in a room where that was counted."""
+    told = {t.id: t for t in things}
+    for together in standing_together(things, lambda _: counts, network):
+        shares = network.joint.recognise(together.things, together.room).shares
+        for thing, share in zip(together.entities, shares.tolist(), strict=True):
+            belief = dict(zip(network.objects.categories, share, strict=True))
+            told[thing.id] = replace(thing, category_belief=belief)
+    return list(told.values())
+
+
+def expected(network: Network, thing: Entity) -> Entity:
+    """A prediction near something, as the network takes it."""
+    at = (network.known(thing.affordances), (*thing.size_xyz[:2], 0.0), thing.top_m)
     return replace(thing, category_belief=network.category_posterior(*at))
 
 
@@ -64,7 +73,7 @@ def explained_map(folder: Path, kb: AfNet) -> StoredMap:
         replace(sample.rooms[0], belief=network.room_posterior(counts), evidence=counts),
         sample.rooms[1],
     )
-    things = tuple(believed(network, t) for t in (table, mug, predicted))
+    things = (*believed(network, [table, mug], counts), expected(network, predicted))
     whole = replace(sample, entities=things, rooms=rooms)
     run = {"ontology": ontology_record(kb.files), "parameters": {"rule": "log-odds"}}
     return load(write_map(folder, whole, run, (), kb))

@@ -11,6 +11,7 @@ from scipy import ndimage
 
 from afkb.flow import Entity, NodeKind, OccupancyGrid
 from afkb.inference import Network
+from afkb.inference.recognition import evidence_of
 from afkb_mapping.rooms.lookup import REACH_M
 
 Mask = NDArray[np.bool_]
@@ -85,9 +86,3 @@ def _nearest(
     rows, cols = clipped.T
     off = np.where((cells == clipped).all(axis=1), distance[rows, cols], np.inf)
     return np.moveaxis(indices, 0, -1)[rows, cols], off * grid.resolution_m
-
-
-def evidence_of(entity: Entity, network: Network) -> tuple[str, ...]:
-    """Names of the evidence classes that a thing counts for."""
-    known = network.known(entity.affordances)
-    return network.evidence_of(known, entity.size_xyz, entity.top_m)
