@@ -29,7 +29,7 @@ import numpy as np
 from afkb.plugins.host import PluginHost
 from afkb_mapping.run import make_map
 from afkb_mapping.run_record import Settings
-from bench.detectors.data import data_folder, homes_in
+from bench.detectors.data import Home, data_folder, homes_in
 from bench.inference.blinded import blinded, nothing, tops_of_tables
 from bench.inference.predicted_truth import Predicted, predictions_of
 
@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
         raise SystemExit("error: name one --home for each --map")
     host = PluginHost()
     told: dict[str, list[Predicted]] = defaultdict(list)
-    for folder, home in _maps(args, host):
+    for folder, home in maps_of(args, host):
         for way, hides in WAYS.items():
             found = blinded(folder, host, hides)
             truth, kb = home.truth, host.knowledge_base
@@ -60,7 +60,8 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     return {way: scores(predictions) for way, predictions in told.items()}
 
 
-def _maps(args: argparse.Namespace, host: PluginHost) -> Iterator[tuple[Path, Any]]:
+def maps_of(args: argparse.Namespace, host: PluginHost) -> Iterator[tuple[Path, Home]]:
+    """The maps that are named, or else of all homes, made now, each with its home."""
     for folder, at in zip(args.map, args.home, strict=True):
         yield folder, homes_in(at, host)[0]
     for home in [] if args.map else homes_in(args.homes, host):
