@@ -103,10 +103,19 @@ class AfNet:
         """Every afbit, by category, part and feature."""
         return self._content.afbits
 
-    @property
+    @cached_property
     def rooms(self) -> Mapping[str, RoomCategory]:
-        """Room categories by name, `UnknownRoom` among them."""
-        return self._content.rooms
+        """Room categories by name, `UnknownRoom` among them; refitted to homes of extensions."""
+        homes = self._homes()
+        if homes is None:
+            return self._content.rooms
+        from afkb.knowledge.own_homes import classes_of, refitted_rooms
+
+        counted_for = {
+            name: classes_of(category, self.evidence_classes, self.features)
+            for name, category in self.categories.items()
+        }
+        return refitted_rooms(self._content.rooms, homes, counted_for)
 
     @property
     def duals(self) -> tuple[Dual, ...]:
@@ -170,7 +179,7 @@ class AfNet:
         tables = list(dict.fromkeys(table.resolve() for table in tables))
         names = Names.load(bundled_ontology().parent / "tables").with_labels(
             {c.name: c.label for c in self.categories.values()},
-            {r.name: r.label for r in self.rooms.values() if r.name != UNKNOWN_ROOM},
+            {r.name: r.label for r in self._content.rooms.values() if r.name != UNKNOWN_ROOM},
         )
         return Figures(count_rooms(tables, names)[0])
 
