@@ -52,12 +52,37 @@ class Room:
     gap_m: float = math.inf
 
 
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A way for a hand to a thing, and the room that it has there.
+
+    `approach`: `above`, or `side`, -1 or 1 of the axis that is not closed along. `axis`: along
+    which fingers close, 0 length, 1 width, 2 height.
+    """
+
+    approach: str
+    axis: int
+    side: int
+    room: Room
+
+
 @dataclass(frozen=True)
 class Clearance:
     """The room about one thing of a map."""
 
     node: Node
     around: Surroundings
+
+    @cached_property
+    def ways(self) -> tuple[Way, ...]:
+        """All ways to the thing, those that come first better if they have as much room."""
+        above = [Way("above", axis, 0, self.from_above(axis)) for axis in (0, 1)]
+        level = [
+            Way("side", axis, side, self.from_side(axis, side))
+            for axis in (0, 1)
+            for side in (-1, 1)
+        ]
+        return (*above, *level, Way("side", 2, 0, self.from_below()))
 
     def from_above(self, axis: int) -> Room:
         """For a hand that comes down and closes along an axis (0 length, 1 width)."""

@@ -18,7 +18,7 @@ from afkb.finding.surroundings import Node, Surroundings
 
 if TYPE_CHECKING:
     from afkb.knowledge import AfNet
-    from afkb.knowledge.model import Category, Feature, Trapezoid
+    from afkb.knowledge.model import Afbit, Category, Feature, Trapezoid
 
 WORTH_A_GRASP = 0.01
 """What is less likely such a thing isn't reached for."""
@@ -71,12 +71,17 @@ def grasps(category: str, found: list[Region], around: Surroundings, kb: AfNet) 
     Those without room for the hand are among them, with `clear` below `CLEAR`.
     """
     kinds = [name for name in kb.categories if category in kb.kinds_of(name)]
+    afbits = [
+        (afbit, kb.features[afbit.feature])
+        for afbit in kb.afbits
+        if afbit.category in kinds and kb.features[afbit.feature].kind == "grasp"
+    ]
     ways: list[Grasp] = []
     for region in found:
         if region.how == "thing" and region.seen and region.probability >= WORTH_A_GRASP:
             node = around.nodes[region.node]
             room = Clearance(node, around)
-            for name, held in _held(node, kinds, kb):
+            for name, held in _held(node, kinds, afbits, kb):
                 way = _way(node, region.probability, kb.features[name], held, room)
                 if way is not None:
                     ways.append(way)
@@ -91,14 +96,15 @@ def is_graspable(category: str, kb: AfNet) -> bool:
     )
 
 
-def _held(node: Node, kinds: list[str], kb: AfNet) -> Iterator[tuple[str, Held]]:
+def _held(
+    node: Node, kinds: list[str], afbits: list[tuple[Afbit, Feature]], kb: AfNet
+) -> Iterator[tuple[str, Held]]:
     """Grasps with how surely the thing affords them, if it is one of the kinds, part by part."""
     belief = {kind: node.belief[kind] for kind in kinds if node.belief.get(kind, 0.0) > 0}
     whole = sum(belief.values())
     found: dict[tuple[str, str | None, bool], float] = {}
-    for afbit in kb.afbits:
-        if afbit.category in belief and kb.features[afbit.feature].kind == "grasp":
-            feature = kb.features[afbit.feature]
+    for afbit, feature in afbits:
+        if afbit.category in belief:
             by_box = afbit.part is None and _typical(feature, kb.categories[afbit.category])
             key = (afbit.feature, afbit.part, by_box)
             share = belief[afbit.category] / whole
@@ -135,50 +141,36 @@ def fit(feature: Feature, size: list[float] | Extents) -> float:
 def _way(node: Node, is_one: float, grasp: Feature, held: Held, clear: Clearance) -> Grasp | None:
     """The way of the best room, of all axes that the grasp can close along; None if none fits."""
     fits = held.strength * (fit(grasp, node.size) if held.by_box else 1.0)
-    ways = list(_approaches(node, grasp, held, clear)) if fits > 0 else []
+    if not fits > 0:
+        return None
+    takes = _apertures(grasp) if held.by_box else []
+    ways = [
+        way
+        for way in clear.ways
+        if (not takes and way.axis < 2) or any(range_(node.size[way.axis]) > 0 for range_ in takes)
+    ]
     if not ways:
         return None
-    approach, axis, side, room = max(ways, key=lambda w: (w[3].probability, w[0] == "above"))
-    width = node.size[axis] if axis is not None and held.by_box else None
-    closing = node.yaw + axis * math.pi / 2 if axis in (0, 1) and held.by_box else None
+    way = max(ways, key=lambda w: w.room.probability)
+    closing = node.yaw + way.axis * math.pi / 2 if way.axis < 2 and held.by_box else None
     bearing = None
-    if approach == "side" and axis is not None:
-        bearing = node.yaw + (1 - axis) * math.pi / 2 + (math.pi if side > 0 else 0.0)
+    if way.approach == "side" and way.axis < 2:
+        bearing = node.yaw + (1 - way.axis) * math.pi / 2 + (math.pi if way.side > 0 else 0.0)
     held_at = held.part or ("whole" if held.by_box else "edge")
-    reason = f"{held_at}: {held.why}; {_told(fits, room)}"
+    reason = f"{held_at}: {held.why}; {_told(fits, way.room)}"
     return Grasp(
         node,
         grasp.name,
         held.part or (None if held.by_box else "edge"),
-        approach,
+        way.approach,
         _turned(bearing),
         _turned(closing),
-        width,
+        node.size[way.axis] if held.by_box else None,
         is_one,
         fits,
-        room.probability,
+        way.room.probability,
         reason,
     )
-
-
-Way = tuple[str, int | None, int, Room]
-
-
-def _approaches(node: Node, grasp: Feature, held: Held, clear: Clearance) -> Iterator[Way]:
-    """From above and from each side, closing along each axis that is as wide as the grasp takes."""
-    takes = _apertures(grasp)
-
-    def wide(axis: int) -> bool:
-        return not takes or any(range_(node.size[axis]) > 0 for range_ in takes)
-
-    for axis in (0, 1):
-        if held.by_box and not wide(axis):
-            continue
-        yield "above", axis, 0, clear.from_above(axis)
-        for side in (-1, 1):
-            yield "side", axis, side, clear.from_side(axis, side)
-    if held.by_box and wide(2):
-        yield "side", 2, 0, clear.from_below()
 
 
 def _apertures(grasp: Feature) -> list[Trapezoid]:

@@ -52,8 +52,11 @@ class Unseen:
         `recognised`: P(one of those that were seen in the room is one).
         """
         none, shares = 1.0, defaultdict[str, float](float)
+        weights = {n.id: self.put.weight(n, self.kb) for n in nodes} if self.put else {}
+        weights = {name: weight for name, weight in weights.items() if weight > 0}
+        carrying = [node for node in nodes if node.id in weights]
         for purpose, p in (room.belief if room else UNKNOWN).items():
-            left = self._left(purpose, room, nodes) if purpose in self.held else {}
+            left = self._left(purpose, room, carrying, weights) if purpose in self.held else {}
             missed = sum(left.values())
             if not missed > 0:
                 continue
@@ -74,17 +77,22 @@ class Unseen:
             p * self.held[room].probability for room, p in belief.items() if room in self.held
         )
 
-    def _left(self, purpose: str, room: RoomNode | None, nodes: list[Node]) -> dict[str, float]:
+    def _left(
+        self,
+        purpose: str,
+        room: RoomNode | None,
+        carrying: list[Node],
+        weights: Mapping[str, float],
+    ) -> dict[str, float]:
         """Of a room's things of the kind, the share that is at each place and was overlooked."""
         looks = room.viewpoints if room else 0
         if self.put is None:
             return {ELSEWHERE: 1.0 - (0.0 if self.flat else self.found(looks))}
         other = self.put.unseen(purpose, self.kb) * (1.0 - self.found(looks))
-        weights = {node.id: self.put.weight(node, self.kb) for node in nodes}
         total = sum(weights.values()) + other
         if not total > 0:
             return {}
-        left = {n.id: weights[n.id] * self._overlooked(n) / total for n in nodes}
+        left = {n.id: weights[n.id] * self._overlooked(n) / total for n in carrying}
         return left | {ELSEWHERE: other / total}
 
     def _overlooked(self, node: Node) -> float:
