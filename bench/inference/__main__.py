@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from bench.part_by_part import run_parts
 
-PARTS = ("homes", "finding", "hardships", "speed")
+PARTS = ("rooms", "homes", "finding", "hardships", "speed")
 
 
 if __name__ == "__main__":
