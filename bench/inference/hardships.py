@@ -22,7 +22,7 @@ import numpy as np
 from afkb.errors import AfkbError
 from afkb.flow import Entity, NodeKind, OccupancyGrid
 from afkb.inference import Network
-from afkb.knowledge import AfNet
+from afkb.knowledge import SOMETHING_ELSE, AfNet
 from afkb_mapping.rooms.evidence import RoomEvidence
 from afkb_mapping.rooms.two_purposes import second_purpose
 
@@ -69,6 +69,7 @@ def run(args: argparse.Namespace) -> list[dict[str, Any]]:
     room = np.ones(grid.probability.shape, dtype=bool)
     prior = network.room_posterior({})
     rows.append(_asked(f"{THINGS} things in a room", lambda: evidence.posterior(room)))
+    rows.append(_asked(f"{THINGS} recognised things", lambda: _recognised(network)))
 
     def second() -> dict[str, float]:
         found = second_purpose(room, grid, evidence.purpose, prior)
@@ -106,10 +107,22 @@ def _evidence(network: Network) -> dict[str, Callable[[], Mapping[str, float]]]:
         "a room with a billion of all": lambda: network.room_posterior(
             dict.fromkeys(network.evidence_looked_for(features), 10**9)
         ),
+        "a kitchen of beds and toilets": lambda: network.room_posterior(
+            {"BedSupport": 9, "CounterHeightSupport": 0}, {"Bed": 999, "Toilet": 999, "Stove": 0}
+        ),
+        "a room with a unicorn": lambda: network.room_posterior({}, {"Unicorn": 1}),
         "a room with minus one bed": lambda: network.room_posterior({"BedSupport": -1}),
         "a room with half a bed": lambda: network.room_posterior({"BedSupport": 0.5}),
         "a room with what nobody counts": lambda: network.room_posterior({"Beds": 1}),
     }
+
+
+def _recognised(network: Network) -> Mapping[str, float]:
+    """What a room is for that holds things of every category, and then what else it holds."""
+    names = [n for n in network.knowledge_base.categories if n != SOMETHING_ELSE]
+    belief = network.room_posterior({}, {n: max(1, THINGS // len(names)) for n in names})
+    network.contents(belief, dict.fromkeys(names, 1))
+    return belief
 
 
 def _extended(folder: Path, text: str) -> dict[str, float]:

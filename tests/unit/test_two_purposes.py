@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from afkb.flow import OccupancyGrid
+from afkb.flow import Entity, NodeKind, OccupancyGrid
+from afkb.inference import network_of
+from afkb.knowledge import AfNet
+from afkb_mapping.rooms.evidence import RoomEvidence
 from afkb_mapping.rooms.two_purposes import second_purpose
 from afkb_mapping.segmentation.open_plan import Mask, Purpose
 
@@ -81,3 +84,64 @@ def test_the_surer_its_parts_the_surer_the_second_purpose() -> None:
     few, many = (second_purpose(room, grid, purpose_of(t), PRIOR) for t in (some, more))
     assert few is not None and many is not None
     assert few[1] < many[1]
+
+
+Seen = tuple[str, tuple[float, float, float], tuple[float, float, float]]
+"""What a thing affords, its position and its size, m."""
+BED: list[Seen] = [
+    ("SupportAbility", (1.2, 2.0, 0.50), (2.0, 1.6, 0.05)),
+    ("SupportAbility", (0.4, 0.6, 0.55), (0.45, 0.4, 0.02)),
+    ("SupportAbility", (0.4, 3.4, 0.60), (0.45, 0.4, 0.02)),
+]
+COUNTERS: list[Seen] = [
+    ("SupportAbility", (7.6, 1.0, 0.9), (1.8, 0.6, 0.02)),
+    ("SupportAbility", (7.6, 3.0, 0.9), (1.8, 0.6, 0.02)),
+    ("SupportAbility", (6.0, 2.0, 0.74), (1.2, 0.8, 0.02)),
+    *(("SupportAbility", (5.5 + 0.4 * k, 1.4, 0.45), (0.4, 0.4, 0.02)) for k in range(3)),
+    *(("ContainAbility", (7.5, 0.5 + 0.3 * k, 1.0), (0.09, 0.09, 0.1)) for k in range(8)),
+]
+
+
+def evidence_of(things: list[Seen], room: Mask, grid: OccupancyGrid) -> RoomEvidence:
+    """Of things that were seen by the bundled network."""
+    entities = [
+        Entity(
+            id=f"t{i}",
+            kind=NodeKind.OBSERVED,
+            position_xyz=position,
+            size_xyz=size,
+            yaw=0.0,
+            affordances={affords: 0.95},
+            existence=1.0,
+            category_belief={},
+            movability="Static",
+            matching_weight=1.0,
+            observations=3,
+            first_seen=0.0,
+            last_seen=1.0,
+            seen_from=(),
+            generated_by=("test",),
+        )
+        for i, (affords, position, size) in enumerate(things)
+    ]
+    looked_from = [np.array([2.0, 2.0]), np.array([6.0, 2.0])]
+    return RoomEvidence(network_of(AfNet()), entities, looked_from, room.astype(np.int32), grid)
+
+
+@pytest.mark.parametrize(
+    ("things", "purposes"),
+    [
+        (BED + COUNTERS, {"Bedroom", "Kitchen"}),
+        (BED, {"Bedroom"}),
+        (COUNTERS, {"Kitchen"}),
+    ],
+    ids=["a flat of one room", "a bedroom", "a kitchen"],
+)
+def test_affordances_tell_both_purposes(things: list[Seen], purposes: set[str]) -> None:
+    grid, room = grid_of(8, 4)
+    evidence = evidence_of(things, room, grid)
+    whole = evidence.posterior(room)
+    prior = network_of(AfNet()).room_posterior({})
+    second = second_purpose(room, grid, evidence.purpose, prior)
+    found = {max(whole, key=lambda r: whole[r]), *([second[0]] if second else [])}
+    assert found == purposes

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import OccupancyGrid
+from afkb.knowledge import UNKNOWN_ROOM
 from afkb_mapping.segmentation.open_plan import (
     LEAST_PART_M2,
     SUBSTANTIAL,
@@ -38,14 +39,15 @@ def second_purpose(
     """The other purpose of a room (rows, cols), and how likely it has one; None where unlikely.
 
     `purpose`: posterior of a part of the grid; `prior`: of any room. The likeliest purpose of the
-    whole room is its first one. One purpose and two are as likely beforehand.
+    whole room is its first one; an unknown purpose is no second one. One purpose
+    and two are as likely beforehand.
     """
     whole = purpose(room)
     if whole is None:
         return None
     first = max(whole, key=lambda r: whole[r])
     factors: list[float] = []
-    weights = dict.fromkeys(sorted(set(prior) - {first}), 0.0)
+    weights = dict.fromkeys(sorted(set(prior) - {first, UNKNOWN_ROOM}), 0.0)
     for part in _parts(room, grid.resolution_m):
         here, there = purpose(part), purpose(room & ~part)
         if not (here and there):
