@@ -13,7 +13,8 @@ import argparse
 import math
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from afkb.inference import Network
 from afkb.knowledge import SOMETHING_ELSE, AfNet
 from afkb_mapping.rooms.evidence import RoomEvidence
 from afkb_mapping.rooms.two_purposes import second_purpose
+from afkb_mapping.things.recognition import recognised
 
 CATEGORIES, THINGS = 500, 2000
 ROOM_M, RESOLUTION_M = 12.0, 0.05
@@ -65,10 +67,13 @@ def run(args: argparse.Namespace) -> list[dict[str, Any]]:
         rows.append(
             _asked(f"{CATEGORIES} further categories", lambda: _extended(Path(scratch), many))
         )
-    grid, evidence = crowded(network)
+    things = crowd()
+    grid, evidence = crowded(network, things)
     room = np.ones(grid.probability.shape, dtype=bool)
     prior = network.room_posterior({})
     rows.append(_asked(f"{THINGS} things in a room", lambda: evidence.posterior(room)))
+    heap = [things[1], *(replace(t, supported_by=things[1].id) for t in things[2:])]
+    rows.append(_asked(f"{THINGS} things on one table", lambda: _joint(heap, network)))
     rows.append(_asked(f"{THINGS} recognised things", lambda: _recognised(network)))
 
     def second() -> dict[str, float]:
@@ -125,6 +130,11 @@ def _recognised(network: Network) -> Mapping[str, float]:
     return belief
 
 
+def _joint(things: Sequence[Entity], network: Network) -> Mapping[str, float]:
+    """What the first of things that stand together is, told together with them all."""
+    return recognised(things, lambda room: {}, network)[0].category_belief
+
+
 def _extended(folder: Path, text: str) -> dict[str, float]:
     """What a network with this extension takes a table for; the error, if it is refused."""
     path = folder / "hard.yaml"
@@ -142,13 +152,10 @@ def many_categories(number: int = CATEGORIES) -> str:
     )
 
 
-def crowded(network: Network) -> tuple[OccupancyGrid, RoomEvidence]:
-    """A square room with things all over, half of them supports, half containers."""
-    rng = np.random.default_rng(SEED)
-    cells = round(ROOM_M / RESOLUTION_M)
-    grid = OccupancyGrid(np.zeros((cells, cells), dtype=np.float32), RESOLUTION_M, (0.0, 0.0))
-    spots = rng.uniform(0.1, ROOM_M - 0.1, (THINGS, 2))
-    things = [
+def crowd() -> list[Entity]:
+    """Things all over a square room, half of them supports, half containers."""
+    spots = np.random.default_rng(SEED).uniform(0.1, ROOM_M - 0.1, (THINGS, 2))
+    return [
         Entity(
             id=f"thing-{i}",
             kind=NodeKind.OBSERVED,
@@ -168,8 +175,15 @@ def crowded(network: Network) -> tuple[OccupancyGrid, RoomEvidence]:
         )
         for i, (x, y) in enumerate(spots)
     ]
+
+
+def crowded(network: Network, things: Sequence[Entity]) -> tuple[OccupancyGrid, RoomEvidence]:
+    """The square room of a crowd, looked into from one of its things."""
+    cells = round(ROOM_M / RESOLUTION_M)
+    grid = OccupancyGrid(np.zeros((cells, cells), dtype=np.float32), RESOLUTION_M, (0.0, 0.0))
     labels = np.ones((cells, cells), dtype=np.int32)
-    return grid, RoomEvidence(network, things, [spots[0]], labels, grid)
+    looked_from = [np.array(things[0].position_xyz[:2])]
+    return grid, RoomEvidence(network, things, looked_from, labels, grid)
 
 
 def table(result: list[dict[str, Any]]) -> Iterator[str]:

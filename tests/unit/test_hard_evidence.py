@@ -11,7 +11,7 @@ import pytest
 from afkb.errors import EvidenceError, KnowledgeError
 from afkb.inference import Network
 from afkb.knowledge import AfNet
-from bench.inference.hardships import CIRCLES, crowded, many_categories
+from bench.inference.hardships import CIRCLES, crowd, crowded, many_categories
 
 CONTRADICTIONS = [
     {"BedSupport": 10**9, "LargeContainer": 10**9, "DisplaySurface": 10**9},
@@ -70,7 +70,7 @@ def test_predictions_may_go_in_a_circle(tmp_path: Path) -> None:
 
 
 def test_a_room_of_two_thousand_things_has_a_purpose(network: Network) -> None:
-    grid, evidence = crowded(network)
+    grid, evidence = crowded(network, crowd())
     room = np.ones(grid.probability.shape, dtype=bool)
     assert sum(evidence.counts(room).values()) >= 2000
     assert math.fsum(evidence.posterior(room).values()) == pytest.approx(1.0, abs=1e-9)
