@@ -11,7 +11,16 @@ from __future__ import annotations
 
 from bench.part_by_part import run_parts
 
-PARTS = ("rooms", "homes", "finding", "hardships", "speed")
+PARTS = (
+    "rooms",
+    "homes",
+    "learning",
+    "predicted",
+    "rules",
+    "finding",
+    "hardships",
+    "speed",
+)
 
 
 if __name__ == "__main__":

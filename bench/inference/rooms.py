@@ -155,8 +155,10 @@ def _folds(
         train, held_out = table.split(fold, args.folds)
         own_fold[held_out] = fold
         trained = Trained.on(train, rooms, kb, others)
-        for evidence, p in found.items():
-            p[held_out] = [trained.posterior(table.rows[i], evidence) for i in held_out]
+        for evidence in EVIDENCE:
+            found[evidence][held_out] = [
+                trained.posterior(table.rows[i], evidence) for i in held_out
+            ]
         if not args.no_peers:
             peers = peer_posteriors(table, train, held_out, rooms)
             for name, posterior in peers.items():
