@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping
 from functools import lru_cache
+from statistics import fmean
 from typing import TYPE_CHECKING
 
 from afkb.figures.smoothing import ROOM_WEIGHT
@@ -18,17 +19,35 @@ if TYPE_CHECKING:
 def rates_by_room(category: str, kb: AfNet) -> tuple[Mapping[str, float], Mapping[str, float]]:
     """P(a room holds any) and the mean number in it, of things of a category, by room category.
 
-    What nothing is stated of is as the nearest broader category; where neither is, alike in every
-    room, so that a home holds as many as expected. Rooms that were counted in which none was
-    found are as unlikely as smoothing has it; rooms that nobody counted are as the mean.
+    What nothing is stated of is as the nearest broader category of which something is, else as
+    others of its group are on average; where there is no such, alike in every room.
+    """
+    stated = _in_rooms(kb)
+    kinds = kb.kinds_of(category)
+    told = next(([kind] for kind in kinds if kind in stated), [])
+    for group in kinds[1:]:
+        told = told or [name for name in stated if group in kb.kinds_of(name)]
+    if not told:
+        rooms = sum(room.expected_number for room in kb.rooms.values())
+        mean = kb.categories[category].expected_number / max(rooms, 1.0)
+        return dict.fromkeys(kb.rooms, min(mean, 1.0)), dict.fromkeys(kb.rooms, mean)
+    rates = [_rates(stated[name], kb) for name in told]
+    return (
+        {room: fmean(p[room] for p, _ in rates) for room in kb.rooms},
+        {room: fmean(n[room] for _, n in rates) for room in kb.rooms},
+    )
+
+
+def _rates(
+    told: Mapping[str, ObjectInRoom], kb: AfNet
+) -> tuple[Mapping[str, float], Mapping[str, float]]:
+    """P(any) and mean number by room category, of what is stated of one category.
+
+    Rooms that were counted in which none was found are as unlikely as smoothing has it; rooms that
+    nobody counted are as the mean.
     """
     rooms = {name: room.expected_number for name, room in kb.rooms.items()}
-    stated = _in_rooms(kb)
-    name = next((kind for kind in kb.kinds_of(category) if kind in stated), None)
-    if name is None:
-        mean = kb.categories[category].expected_number / max(sum(rooms.values()), 1.0)
-        return dict.fromkeys(rooms, min(mean, 1.0)), dict.fromkeys(rooms, mean)
-    told, counted = stated[name], _counted(kb)
+    counted = _counted(kb)
     found = sum(figure.successes for figure in told.values())
     anywhere = (found + 0.5) / (sum(counted.values()) + 1.0)
     p = {room: anywhere * ROOM_WEIGHT / (n + ROOM_WEIGHT) for room, n in counted.items()}
