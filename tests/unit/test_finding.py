@@ -259,5 +259,5 @@ def test_less_of_a_statement_moves_what_it_speaks_of_and_nothing_else(
 
     changed = Changed(figure, factor)
     assert told("Mug", changed)[0] < 0.95 * told("Mug", kb)[0]
-    # A saucepan, of which nothing is stated, is where containers are on average; a bowl may be in it.
+    # A saucepan, of which nothing is stated, is where containers are; a bowl may be in it.
     assert told("Bowl", changed)[1] == pytest.approx(told("Bowl", kb)[1], abs=1e-4)
