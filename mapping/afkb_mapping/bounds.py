@@ -171,23 +171,26 @@ class BoundMerger:
         return np.array(sorted(rows), dtype=np.intp)
 
     def part(self, start_xy: Array, end_xy: Array) -> bool:
-        """Whether a wall crosses the straight line between two points (2,), m.
+        """Whether a wall crosses the straight line between two points (2,), m."""
+        return bool(self.part_from(start_xy, end_xy[None])[0])
+
+    def part_from(self, start_xy: Array, ends_xy: Array) -> NDArray[np.bool_]:
+        """(N,) whether a wall crosses the straight lines from a point (2,) to points (N, 2), m.
 
         Shorter bounds than `WALL_M` are fronts and backs of furniture.
         """
-        near = self._near(np.array([start_xy, end_xy]))
-        if not len(near):
-            return False
+        near = self._near(np.vstack([start_xy, ends_xy]))
         a, b = self._ends[near].transpose(1, 0, 2)
-        step, wall = end_xy - start_xy, b - a
+        step, wall = (ends_xy - start_xy)[:, None], b - a
         walls = np.linalg.norm(wall, axis=1) >= WALL_M
-        denominator = step[0] * wall[:, 1] - step[1] * wall[:, 0]
+        denominator = step[..., 0] * wall[:, 1] - step[..., 1] * wall[:, 0]
         to_a = a - start_xy
         with np.errstate(divide="ignore", invalid="ignore"):
             on_line = (to_a[:, 0] * wall[:, 1] - to_a[:, 1] * wall[:, 0]) / denominator
-            on_wall = (to_a[:, 0] * step[1] - to_a[:, 1] * step[0]) / denominator
+            on_wall = (to_a[:, 0] * step[..., 1] - to_a[:, 1] * step[..., 0]) / denominator
         crosses = (on_line > 0) & (on_line < 1) & (on_wall >= 0) & (on_wall <= 1)
-        return bool((crosses & walls).any())
+        parted: NDArray[np.bool_] = (crosses & walls).any(axis=1)
+        return parted
 
     def bounds(self) -> list[Bound]:
         """The walls so far, by place; ids are stable as long as nothing is added."""

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-import numpy as np
-
 from afkb.flow import ChangeKind, Detection, Hypothesis, PredictionState, Relation, View
 from afkb.inference.update_rules import in_part, update_rule
 from afkb_mapping.bounds import BoundMerger
@@ -168,8 +166,8 @@ class Expectations:
         for prediction in doubtful:
             near = prediction.near_xy
             if prediction in self._index and near is not None:
-                part = [self._bounds.part(near, xy) for xy in prediction.where.points_xy]
-                ratio = prediction.where.rule_out(np.array(part, dtype=bool))
+                parted = self._bounds.part_from(near, prediction.where.points_xy)
+                ratio = prediction.where.rule_out(parted)
                 self._take_against(prediction, ChangeKind.WALLED_OFF, ratio, view)
 
     def age(self, seconds: float, stamp: float, hazard: Callable[[PredictedTrack], float]) -> None:

@@ -46,6 +46,10 @@ class Walls(Protocol):
         """Whether a wall stands between two points (2,)."""
         ...
 
+    def part_from(self, start_xy: Array, ends_xy: Array) -> NDArray[np.bool_]:
+        """(N,) whether a wall stands between a point (2,) and points (N, 2)."""
+        ...
+
 
 def ground(
     hypothesis: Hypothesis,
@@ -116,9 +120,7 @@ def _near(
     if max(hypothesis.size_xy_m) >= FURNITURE_M:
         where.unseen = _unseen(where.points_xy, hypothesis.size_xy_m, cells)
         where.density *= ~_something_between(anchor, _reach(anchors), where.points_xy, cells)
-    for index in np.flatnonzero(where.density):
-        if walls.part(anchor, where.points_xy[index]):
-            where.density[index] = 0.0
+    where.density *= ~walls.part_from(anchor, where.points_xy)
     return where if where.open_share > 0 else None
 
 
