@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from afkb.errors import PluginError
 from afkb.flow import Doorway, Room, TopologicalMap
 from afkb.knowledge import AfNet
 from afkb.testing import sample_map
@@ -50,9 +49,12 @@ def test_the_map_keeps_its_own_belief_and_gets_the_others_beside_it(
     assert found.rooms[0].other_beliefs == {"doors-and-walls": told}
 
 
-def test_a_classifier_that_fails_is_named() -> None:
-    with pytest.raises(PluginError, match="room classifier 'fails'"):
-        with_opinions(sample_map(), [Fails()])
+def test_a_classifier_that_fails_is_named_and_loses_nobody_the_map(
+    by_shape: ShapeClassifier,
+) -> None:
+    found = with_opinions(sample_map(), [Fails(), by_shape])
+    assert set(found.rooms[0].other_beliefs) == {"doors-and-walls"}
+    assert any("room classifier 'fails' failed with RuntimeError" in n for n in found.notes)
 
 
 def test_a_shape_is_walls_doors_area_and_elongation() -> None:

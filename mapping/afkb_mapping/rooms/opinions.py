@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from afkb.errors import PluginError
 from afkb.flow import TopologicalMap
 from afkb.plugins.protocols import RoomClassifier
 from afkb_mapping.perception import blamed
@@ -13,14 +14,17 @@ from afkb_mapping.perception import blamed
 def with_opinions(found: TopologicalMap, classifiers: Sequence[RoomClassifier]) -> TopologicalMap:
     """The map with the beliefs of room classifiers, by their names, beside its own.
 
-    Raises `PluginError` that names the classifier that fails.
+    One that fails is left out, and named in the map's notes: a whole run has gone before it.
     """
-    told = {}
+    told, notes = {}, list(found.notes)
     for classifier in classifiers:
-        with blamed("room classifier", classifier.name):
-            told[classifier.name] = classifier.beliefs(found)
+        try:
+            with blamed("room classifier", classifier.name):
+                told[classifier.name] = classifier.beliefs(found)
+        except PluginError as error:
+            notes.append(str(error))
     rooms = (
         replace(room, other_beliefs={n: b[room.id] for n, b in told.items() if room.id in b})
         for room in found.rooms
     )
-    return replace(found, rooms=tuple(rooms))
+    return replace(found, rooms=tuple(rooms), notes=tuple(notes))
