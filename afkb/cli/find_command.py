@@ -126,6 +126,7 @@ def region_json(region: Region) -> dict[str, object]:
         "node": region.node,
         "how": region.how,
         "room": region.room,
+        "parts": [[round(x, 3), round(y, 3), round(share, 4)] for x, y, share in region.parts],
     }
 
 

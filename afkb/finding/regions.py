@@ -22,7 +22,8 @@ class Region:
     """A place where, with a probability, there is such a thing; map frame, m.
 
     `node` is the thing itself (`how` is `thing`), what it would stand on (`support`), or the room
-    in which it would be elsewhere (`room`). `seen`: whether what may be it was seen.
+    in which it would be elsewhere (`room`). `seen`: whether what may be it was seen. `parts`: of a
+    predicted thing the places where it may be, (x, y, share), of which `x`, `y` is the likeliest.
     """
 
     node: str
@@ -34,6 +35,7 @@ class Region:
     probability: float
     seen: bool
     reason: str
+    parts: tuple[tuple[float, float, float], ...] = ()
 
 
 def regions(category: str, around: Surroundings, kb: AfNet) -> list[Region]:
@@ -76,7 +78,8 @@ def _thing(node: Node, kinds: list[str], label: str, kb: AfNet) -> Region:
         f"{node.id}, {how}{where}: exists with {node.existence:.2f}, is a {label} with {share:.2f}"
     )
     p = min(node.existence * share, 1.0)
-    return Region(node.id, "thing", node.x, node.y, node.z, node.room, p, node.seen, reason)
+    at = (node.x, node.y, node.z)
+    return Region(node.id, "thing", *at, node.room, p, node.seen, reason, node.parts)
 
 
 def _unseen(

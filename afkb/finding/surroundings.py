@@ -9,11 +9,11 @@ from itertools import pairwise
 from statistics import median
 from typing import TYPE_CHECKING
 
+from pyoxigraph import NamedNode
+
 from afkb.store.vocabulary import local_name
 
 if TYPE_CHECKING:
-    from pyoxigraph import NamedNode
-
     from afkb.store import StoredMap
 
 SEEN = "ObservedEntity"
@@ -26,7 +26,8 @@ class Node:
     """A thing, seen or expected; map frame, m and rad.
 
     `z`: of a support its top, of anything else the middle of its box. `affords`: feature to
-    probability. `viewpoints`: from how many places of the robot it was seen.
+    probability. `viewpoints`: from how many places of the robot it was seen. `parts`: of a
+    predicted one where its middle may be, (x, y, share), the shares adding up to 1.
     """
 
     id: str
@@ -42,6 +43,7 @@ class Node:
     yaw: float = 0.0
     affords: Mapping[str, float] = field(default_factory=dict)
     viewpoints: int = 0
+    parts: tuple[tuple[float, float, float], ...] = ()
 
     @property
     def seen(self) -> bool:
@@ -123,7 +125,22 @@ def _node(stored: StoredMap, node: NamedNode, kind: str) -> Node:
         yaw=stored.number(node, "afn:yaw"),
         affords=affords | stored.belief(node, "affordance", "affordance"),
         viewpoints=len(stored.names(node, "afn:seenFrom")) if kind == SEEN else 0,
+        parts=_parts(stored, node),
     )
+
+
+def _parts(stored: StoredMap, node: NamedNode) -> tuple[tuple[float, float, float], ...]:
+    """The parts of a prediction's region, the likeliest first."""
+    found = [
+        (
+            stored.number(part, "afn:x"),
+            stored.number(part, "afn:y"),
+            stored.number(part, "afn:probability"),
+        )
+        for name in stored.names(node, "afn:regionPart")
+        for part in (NamedNode(stored.base + name),)
+    ]
+    return tuple(sorted(found, key=lambda part: (-part[2], part[:2])))
 
 
 def _room(
