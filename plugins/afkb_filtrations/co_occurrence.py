@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from afkb.flow import Detection, Hypothesis, Relation
 from afkb.inference import Network, network_of
 from afkb.knowledge import AfNet, CoOccurrence, EvidenceClass
+from afkb_filtrations.localizer import Localizer
 from afkb_filtrations.space import distance_to_box, distance_xy, groups_of, top_height
 
 
@@ -22,6 +23,7 @@ class CoOccurrencePredictor:
 
     def __init__(self, knowledge_base: AfNet) -> None:
         self._knowledge_base = knowledge_base
+        self._localizer = Localizer(knowledge_base)
 
     def predict(self, detections: Sequence[Detection]) -> list[Hypothesis]:
         """One hypothesis per rule and group of things that may stand about the same larger one."""
@@ -38,7 +40,8 @@ class CoOccurrencePredictor:
     ) -> list[Hypothesis]:
         faintest = self._knowledge_base.parameters["FaintestHypothesis"]
         probability = {}
-        for index, detection in enumerate(detections):
+        for index in self._localizer.coarse_first(detections):
+            detection = detections[index]
             if self._applies(network, rule, detection) and not any(
                 self._is_it(rule, detection, other) for other in detections
             ):
@@ -85,7 +88,7 @@ class CoOccurrencePredictor:
             predictor=self.name,
             order=self.order,
             relation=Relation.NEAR,
-            anchors=anchors,
+            anchors=tuple(sorted(anchors)),
             affordances={rule.feature: 1.0},
             scale=rule.predicted_scale,
             probability=probability,

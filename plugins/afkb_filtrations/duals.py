@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from afkb.flow import Detection, Hypothesis, Relation
 from afkb.inference import Network, network_of
 from afkb.knowledge import AfNet, Dual
+from afkb_filtrations.localizer import Localizer
 from afkb_filtrations.space import (
     SAME_LEVEL_M,
     distance_to_box,
@@ -33,9 +34,13 @@ class DualPredictor:
 
     def __init__(self, knowledge_base: AfNet) -> None:
         self._knowledge_base = knowledge_base
+        self._localizer = Localizer(knowledge_base)
 
     def predict(self, detections: Sequence[Detection]) -> list[Hypothesis]:
-        """One hypothesis per group of anchors and predicted feature, in the ontology's order."""
+        """One hypothesis per group of anchors and predicted feature.
+
+        Coarse before fine, by the scale of what is predicted; then in the ontology's order.
+        """
         network = network_of(self._knowledge_base)
         faintest = self._knowledge_base.parameters["FaintestHypothesis"]
         telling = {dual.evidence for dual in self._knowledge_base.duals}
@@ -53,7 +58,7 @@ class DualPredictor:
             for dual in self._knowledge_base.duals
             if dual.evidence in seen and network.relations.dual(dual.name) >= faintest
         ]
-        return [
+        found = [
             self._hypothesis(network, detections, group, anchors)
             for predicted, relation in dict.fromkeys((d.predicted, d.relation) for d in duals)
             for group, anchors in self._groups(
@@ -62,6 +67,7 @@ class DualPredictor:
                 [d for d in duals if (d.predicted, d.relation) == (predicted, relation)],
             )
         ]
+        return sorted(found, key=lambda hypothesis: self._localizer.rank(hypothesis.scale))
 
     def _groups(
         self, detections: Sequence[Detection], afforded: Sequence[set[str]], duals: list[Dual]

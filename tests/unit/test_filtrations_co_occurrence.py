@@ -7,6 +7,8 @@ from afkb.knowledge import AfNet
 from afkb.plugins.protocols import Predictor
 from afkb_filtrations import afkb_predictors
 from afkb_filtrations.co_occurrence import CoOccurrencePredictor
+from afkb_filtrations.duals import DualPredictor
+from afkb_filtrations.localizer import Localizer
 from ontology_samples import Copy
 from test_filtrations_duals import table, thing
 
@@ -71,3 +73,19 @@ def test_the_hook_brings_both_orders() -> None:
     predictors = list(afkb_predictors(knowledge_base=AfNet()))
     assert [(p.name, p.order) for p in predictors] == [("duals", 1), ("co-occurrence", 2)]
     assert all(isinstance(p, Predictor) for p in predictors)
+
+
+def test_the_localizer_puts_what_supports_and_contains_first_coarse_before_fine() -> None:
+    cup = thing("ContainAbility", (2, 0, 0.73))
+    package = thing("IntrinsicContainAbility", (3, 0, 0.73), (0.4, 0.3, 0.3))
+    pen = thing("EngraveAbility", (2, 0, 0.73), (0.15, 0.01, 0.01))
+    seen = [pen, cup, chair(1), package, table(5, 0)]
+    localizer = Localizer(AfNet())
+    assert localizer.localized(seen) == [4, 2, 3, 1]
+    assert localizer.coarse_first(seen) == [4, 2, 3, 1, 0]
+
+
+def test_what_is_coarse_is_predicted_before_what_is_fine() -> None:
+    book = thing("DisplayAbility", (2, 0, 0.73), (0.25, 0.2, 0.03))
+    found = DualPredictor(AfNet()).predict([book, thing("ContainAbility", (4, 0, 0.73))])
+    assert [h.scale for h in found] == ["Large", "Small"]
