@@ -13,6 +13,7 @@ from bench.part_by_part import run_parts
 
 PARTS = (
     "rooms",
+    "contents",
     "homes",
     "learning",
     "predicted",
