@@ -43,7 +43,9 @@ def _differences(stored: StoredMap, found: Explanation, kb: AfNet) -> list[str]:
     """What of the chain does not lead to what the map states, and why that may be."""
     notes = [f"{name} has changed since the map was made" for name in changed_since(stored, kb)]
     if found.chain is not None and found.chain.off_by > ROUNDING:
-        notes.append(f"recomputed and stored beliefs differ by up to {found.chain.off_by:.2g}")
+        why = "; its predictor may have said what it would be" if found.kind in PREDICTIONS else ""
+        off_by = f"{found.chain.off_by:.2g}"
+        notes.append(f"recomputed and stored beliefs differ by up to {off_by}{why}")
     life = found.life
     if life is not None and life.recomputed is not None:
         off = abs(life.recomputed - life.stored)

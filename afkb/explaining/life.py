@@ -11,7 +11,12 @@ from afkb.explaining.chain import WhatIf, if_otherwise
 from afkb.explaining.explanation import Life
 from afkb.explaining.reading import changes_of
 from afkb.flow import Change, ChangeKind
-from afkb.inference.existence import after, folded
+from afkb.inference.existence import (
+    EMPTY_LIKELIHOOD_RATIO,
+    OVERLOOKED_LIKELIHOOD_RATIO,
+    after,
+    folded,
+)
 from afkb.inference.update_rules import RULES, UpdateRule, log_odds
 from afkb.store import StoredMap
 
@@ -27,7 +32,16 @@ WORDS = {
     ChangeKind.CONFIRMED: "seen, and so confirmed",
 }
 
-_BEGIN = (ChangeKind.SIGHTED, ChangeKind.PREDICTED, ChangeKind.PREDICTED_AGAIN)
+_BEGIN = (
+    ChangeKind.SIGHTED,
+    ChangeKind.PREDICTED,
+    ChangeKind.PREDICTED_AGAIN,
+    ChangeKind.CONFIRMED,
+)
+_LOOKS = {
+    ChangeKind.SEEN_THROUGH: EMPTY_LIKELIHOOD_RATIO,
+    ChangeKind.OVERLOOKED: OVERLOOKED_LIKELIHOOD_RATIO,
+}
 
 
 def life_of(stored: StoredMap, node: NamedNode, past: bool = False) -> Life:
@@ -51,7 +65,7 @@ def rule_of(stored: StoredMap) -> UpdateRule:
 
 
 def _otherwise(changes: Sequence[Change], rule: UpdateRule) -> Iterator[WhatIf]:
-    """Without each of the steps, and with the strongest look once more."""
+    """Without each of the steps, with the surest sighting once more, and with looks in vain."""
     now = folded(changes, rule)
     if now is None:
         return
@@ -64,6 +78,9 @@ def _otherwise(changes: Sequence[Change], rule: UpdateRule) -> Iterator[WhatIf]:
         best = max(c.evidence for c in seen)
         p = after(ChangeKind.SIGHTED, best, now, rule)
         yield if_otherwise(f"if one more view saw it as surely ({best:.2f})", before, _existing(p))
+    for kind, ratio in _LOOKS.items():
+        what = f"if one more view found it {WORDS[kind].removeprefix('in clear view and ')}"
+        yield if_otherwise(what, before, _existing(after(kind, ratio, now)))
 
 
 def _without(changes: Sequence[Change], left: int, rule: UpdateRule) -> float:

@@ -43,7 +43,8 @@ def _room_row(kb: AfNet, together: Together, in_room: Array) -> Row:
     def sources(category: str) -> tuple[Source, ...]:
         figure = next((figures[kind] for kind in kb.kinds_of(category) if kind in figures), None)
         if figure is None:
-            return ()
+            says = f"no figure of {category} in a {likeliest}"
+            return (of_statement(kb.categories[category], says),)
         says = f"{likeliest} holds {figure.mean_number:g} of {figure.category}"
         return (of_statement(figure, says),)
 
@@ -61,6 +62,9 @@ def _neighbours_row(kb: AfNet, together: Together, at: int, told: Array) -> Row:
         pairs = [(category, _likeliest(e)) for e in below]
         pairs += [(_likeliest(e), category) for e in above[:TOLD]]
         found = dict.fromkeys(f for thing, on in pairs if (f := _put(kb, thing, on)))
+        if not found:
+            says = f"no figure of {category} with these; what others stand on, as far as it is told"
+            return (of_statement(kb.categories[category], says),)
         return tuple(
             of_statement(f, f"{f.probability:.0%} of {f.given} are on {f.category}") for f in found
         )

@@ -25,6 +25,7 @@ from afkb.inference.recognition import evidence_of, is_floor
 from afkb.knowledge import AfNet
 from afkb.knowledge.model import CoOccurrence, Dual
 from afkb.store import StoredMap
+from afkb.store.shapes import rooms_json
 from afkb.store.vocabulary import local_name
 
 ROUNDING = 1e-6
@@ -40,6 +41,9 @@ def explain_thing(stored: StoredMap, node: NamedNode, network: Network) -> Expla
         "its top": f"{thing.top_m:.2f} m above the floor",
         "affords": _probabilities(thing.affordances),
     }
+    hints = thing.affordances.keys() - network.known(thing.affordances).keys()
+    if hints:
+        facts["of that no evidence of what it is"] = ", ".join(sorted(hints))
     if not thing.extent_known:
         facts["extent"] = "not known: at least as long and wide as it looks"
     told = f"seen, {_where(thing)}; held for {_probabilities(thing.category_belief, 3)}"
@@ -115,12 +119,27 @@ def explain_room(stored: StoredMap, node: NamedNode, network: Network) -> Explan
         id=id_,
         kind="Room",
         told=f"a room, held for {_probabilities(belief, 3)}",
-        facts={"area": f"{stored.number(node, 'afn:area'):.1f} m²", "the robot": visited},
+        facts={
+            "area": f"{stored.number(node, 'afn:area'):.1f} m²",
+            "the robot": visited,
+            **_other_beliefs(stored, id_),
+        },
         grounds=tuple(counting),
         about="what it is for",
         chain=purpose(network, counts, belief, things),
         notes=tuple(notes),
     )
+
+
+def _other_beliefs(stored: StoredMap, room: str) -> dict[str, str]:
+    """What stands beside the room's own belief: a second purpose, and what classifiers say."""
+    told = next(r for r in rooms_json(stored) if r["id"] == room)
+    found = {}
+    if isinstance(second := told["second_purpose"], dict):
+        found["a second purpose"] = f"{second['category']} {second['probability']:.2f}"
+    if isinstance(others := told["other_beliefs"], dict):
+        found |= {f"by {name}": _probabilities(belief, 3) for name, belief in others.items()}
+    return found
 
 
 def _counted_again(network: Network, things: Sequence[Entity]) -> dict[str, int]:

@@ -7,6 +7,13 @@ from collections.abc import Iterable
 from afkb.flow import Change, ChangeKind
 from afkb.inference.update_rules import UpdateRule, against, log_odds
 
+EMPTY_LIKELIHOOD_RATIO = 0.03
+"""P(seen through | still there) over P(seen through | gone): most of a thing's surface, in clear
+view, is seen through by mistake only where the pose is off or the thing is see-through."""
+OVERLOOKED_LIKELIHOOD_RATIO = 0.55
+"""P(not detected | there) over P(not detected | a false cue): detectors find about half of the
+things they have in clear view, and repeat few of their errors from elsewhere."""
+
 
 def after(
     kind: ChangeKind, evidence: float, before: float | None, rule: UpdateRule = log_odds

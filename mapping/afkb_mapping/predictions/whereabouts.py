@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from afkb.inference.existence import EMPTY_LIKELIHOOD_RATIO
 from afkb_mapping.things.visibility import Sight
-from afkb_mapping.visits.persistence import EMPTY_LIKELIHOOD_RATIO
 
 Array = NDArray[np.float64]
 

@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import ChangeKind, View
+from afkb.inference.existence import EMPTY_LIKELIHOOD_RATIO, OVERLOOKED_LIKELIHOOD_RATIO
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.things.visibility import Look, Sight
 from afkb_mapping.visits.persistence import (
-    EMPTY_LIKELIHOOD_RATIO,
     HOUR_S,
-    OVERLOOKED_LIKELIHOOD_RATIO,
     aged,
 )
 

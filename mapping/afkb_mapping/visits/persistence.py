@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 
+from afkb.inference.existence import EMPTY_LIKELIHOOD_RATIO, OVERLOOKED_LIKELIHOOD_RATIO
 from afkb.inference.update_rules import CERTAIN, against
 
 WEEK_S = 7 * 24 * 3600.0
@@ -25,12 +26,6 @@ HOUR_S = 3600.0
 AGED_EVERY_S = 600.0
 """How often beliefs are aged; within ten minutes the least steadfast lose a thousandth."""
 
-EMPTY_LIKELIHOOD_RATIO = 0.03
-"""P(seen through | still there) over P(seen through | gone): most of a thing's surface, in clear
-view, is seen through by mistake only where the pose is off or the thing is see-through."""
-OVERLOOKED_LIKELIHOOD_RATIO = 0.55
-"""P(not detected | there) over P(not detected | a false cue): detectors find about half of the
-things they have in clear view, and repeat few of their errors from elsewhere."""
 MET_LIKELIHOOD_RATIO = 5.0
 """P(depth meets its shape | there) over P(the same | gone): something as large has come."""
 GONE_BELOW = 0.2
