@@ -16,6 +16,7 @@ PARTS = (
     "contents",
     "homes",
     "learning",
+    "things",
     "predicted",
     "rules",
     "finding",
