@@ -105,9 +105,10 @@ def explain_room(stored: StoredMap, node: NamedNode, network: Network) -> Explan
         if t.room == id_ and t.kind is NodeKind.OBSERVED and not is_floor(t)
     ]
     counts, notes = counts_of(stored, node), []
-    if not counts and things:
+    again = _counted_again(network, things)
+    if again and not counts:
         notes.append("the map does not state what was counted; counted again, from its things")
-        counts = _counted_again(network, things)
+        counts = again
     belief = stored.belief(node, "room", "roomCategory")
     counting = [
         Ground(t.id, f"counts as {' and '.join(classes)}")

@@ -14,7 +14,9 @@ from afkb.explaining.reading import counts_by_room, entities_of
 from afkb.explaining.shape import explanation_json
 from afkb.explaining.telling import statements
 from afkb.inference import network_of
+from afkb.inference.existence import EMPTY_LIKELIHOOD_RATIO
 from afkb.inference.recognition import standing_together
+from afkb.inference.update_rules import against
 from afkb.knowledge import AfNet
 from afkb.plugins.host import PluginHost
 from afkb.store.made_with import changed_since, knowledge_of
@@ -55,6 +57,16 @@ def test_a_life_leads_to_the_existence_that_the_map_states(stored, kb) -> None:
     told = {w.what: w.posterior["it is there"] for w in life.what_if}
     assert told["without step 2: in clear view and not detected"] > life.stored
     assert told["without step 3: seen"] < life.stored
+    through = told["if one more view found it seen through"]
+    assert through == pytest.approx(against(life.stored, EMPTY_LIKELIHOOD_RATIO))
+
+
+def test_a_thing_is_told_by_its_room_and_by_what_it_stands_on(stored, kb) -> None:
+    chain = explain(stored, "n2", kb).chain
+    rows = {r.name: r for r in chain.rows}
+    assert rows["Room"].observed.startswith("room1, by what else is in it")
+    assert rows["Neighbours"].observed.startswith("on n1 (")
+    assert all(rows["Room"].sources(state) for state in chain.likeliest())
 
 
 def test_pixels_and_frames_are_named(stored, kb) -> None:
