@@ -165,3 +165,30 @@ def test_a_look_counts_once():
 def test_parts_of_a_piece_of_evidence_add_up_to_it(strength, share, rule):
     first, second = (in_part(rule, strength, s) for s in (share, 1 - share))
     assert RULES[rule](first, second) == pytest.approx(strength, abs=1e-9)
+
+
+def pen_near(anchor):
+    """What engraves near a display: too small to be seen through."""
+    pen = replace(support_near(anchor, 0.3), size_xy_m=(0.15, 0.02), top_height_m=None)
+    return replace(pen, affordances={"EngraveAbility": 1.0}, scale="Small", probability=0.7)
+
+
+def test_what_is_small_and_missing_in_clear_view_is_less_probable_from_each_viewpoint(mapper):
+    seen = [support(2.0, 0.0, z=1.1, width=0.2, depth=0.2)]
+    probabilities = []
+    for i in range(3):
+        mapper.add(view(i, y=0.4 * i, depth_m=2.0), seen, [pen_near(0)])
+        mapper.add(view(i, y=0.4 * i, depth_m=2.0), seen, [])
+        (pen,) = expected(mapper, NodeKind.CO_OCCURRENCE)
+        probabilities.append(pen.existence)
+    assert 0.7 > probabilities[0] > probabilities[1] > probabilities[2] > 0.2
+    assert ChangeKind.OVERLOOKED in {change.kind for change in pen.history}
+
+
+def test_what_is_far_off_is_not_looked_for():
+    where = Whereabouts.even(np.array([1.7, -0.1]), np.array([1.9, 0.1]))
+    clear = where.in_clear_view(Sight(view(depth_m=1.8)), (1.2, 1.2))
+    assert clear.all()
+    assert where.overlook(clear) == pytest.approx(0.55)
+    far = where.in_clear_view(Sight(view(x=-1.7, depth_m=3.5)), (1.2, 1.2))
+    assert not far.any()

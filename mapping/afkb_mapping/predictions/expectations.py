@@ -20,6 +20,7 @@ from afkb_mapping.things.looks import eye_of
 from afkb_mapping.things.standing import support_of
 from afkb_mapping.things.track_index import TrackIndex
 from afkb_mapping.things.tracks import ObservedTrack
+from afkb_mapping.things.viewpoints import Viewpoints
 from afkb_mapping.things.visibility import Sight
 from afkb_mapping.visits.persistence import GONE_BELOW, HOUR_S, aged
 
@@ -154,6 +155,15 @@ class Expectations:
         for prediction in self._index.near(*sight.reach):
             ratio = prediction.where.look(sight, prediction.top_range_m)
             self._take_against(prediction, ChangeKind.SEEN_THROUGH, ratio, view)
+            if prediction.is_small and prediction in self._index:
+                self._look_closely(prediction, sight, view)
+
+    def _look_closely(self, prediction: PredictedTrack, sight: Sight, view: View) -> None:
+        """What is small is not seen through: that it is not detected in clear view counts."""
+        where = prediction.where
+        clear = where.in_clear_view(sight, prediction.top_range_m)
+        if clear.any() and prediction.missed_from.is_new(eye_of(view), prediction.center_xy):
+            self._take_against(prediction, ChangeKind.OVERLOOKED, where.overlook(clear), view)
 
     def refute_doubtful(self, expected: Sequence[PredictedTrack], view: View) -> None:
         """Take in the walls between predictions and what they are near to.
@@ -180,6 +190,7 @@ class Expectations:
             prediction.life.take(ChangeKind.AGED, left, stamp)
             if seconds >= HOUR_S:
                 prediction.where.forget_looks()
+                prediction.missed_from = Viewpoints()
             if prediction.probability < GONE_BELOW:
                 self._end(prediction, PredictionState.EXPIRED, stamp)
 

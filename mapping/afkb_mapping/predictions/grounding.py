@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Hypothesis, NodeKind, Relation, View
-from afkb_mapping.predictions.predicted_track import PredictedTrack
+from afkb_mapping.predictions.predicted_track import FURNITURE_M, PredictedTrack
 from afkb_mapping.predictions.whereabouts import Whereabouts
 from afkb_mapping.things.tracks import ObservedTrack
 
@@ -21,8 +21,6 @@ HEIGHT_TOLERANCE_M = 0.06
 KIND_OF_ORDER = {1: NodeKind.DUAL, 2: NodeKind.CO_OCCURRENCE}
 
 WALL_STEP_M = 0.05
-FURNITURE_M = 0.35
-"""What is longer hides floor that scans and looks would show (the ontology's limit of `Small`)."""
 
 Array = NDArray[np.float64]
 

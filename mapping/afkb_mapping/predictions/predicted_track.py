@@ -14,6 +14,9 @@ from afkb_mapping.things.viewpoints import Viewpoints
 
 Array = NDArray[np.float64]
 
+FURNITURE_M = 0.35
+"""What is longer hides floor that scans and looks would show (the ontology's limit of `Small`)."""
+
 
 @dataclass(slots=True, eq=False)
 class PredictedTrack:
@@ -45,6 +48,7 @@ class PredictedTrack:
     decayed: bool = False
     observations: int = 1
     viewpoints: Viewpoints = field(default_factory=Viewpoints)
+    missed_from: Viewpoints = field(default_factory=Viewpoints)
     places: dict[str, None] = field(default_factory=dict)
     reach_m: float = 0.0
     near_xy: Array | None = None
@@ -53,6 +57,11 @@ class PredictedTrack:
     def probability(self) -> float:
         """That there is such a thing, where it is expected."""
         return self.life.probability
+
+    @property
+    def is_small(self) -> bool:
+        """Whether it hides too little of what is behind it to be seen through."""
+        return 0 < max(self.size_xy_m) < FURNITURE_M
 
     @property
     def state(self) -> PredictionState:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from afkb.inference.existence import EMPTY_LIKELIHOOD_RATIO
+from afkb.inference.existence import EMPTY_LIKELIHOOD_RATIO, OVERLOOKED_LIKELIHOOD_RATIO
 from afkb_mapping.things.visibility import Sight
 
 Array = NDArray[np.float64]
@@ -22,6 +22,8 @@ RINGS = (-1.0, 0.0, 1.0)
 MOST_ALONG = 8
 """Points of a rectangle along its longer side, so that a distribution stays small."""
 FINEST_M = 0.10
+LOOKED_FOR_WITHIN_M = 2.0
+"""Up to here a cup would be found: at twice that, its 9 cm are a dozen pixels of 640."""
 UNDER_TOPS = (1 / 3, 2 / 3)
 """Lowest and highest top of what carries a thing: the more of a foot would have to be hidden, the
 less probable, down to nothing (a triangular density's thirds)."""
@@ -120,7 +122,20 @@ class Whereabouts:
         before = self.open_share
         for column, top in enumerate(tops_m):
             through = sight.sees_through(self.points_xy, top)
-            self.told[through, column] = EMPTY_LIKELIHOOD_RATIO
+            told = np.minimum(self.told[:, column], EMPTY_LIKELIHOOD_RATIO)
+            self.told[:, column] = np.where(through, told, self.told[:, column])
+        return self.open_share / before
+
+    def in_clear_view(self, sight: Sight, tops_m: tuple[float, float]) -> NDArray[np.bool_]:
+        """(N,) whether a look, near enough to find small things, shows what is at each point."""
+        looks = [sight.meets(self.points_xy, top, LOOKED_FOR_WITHIN_M) for top in tops_m]
+        seen: NDArray[np.bool_] = np.logical_or(*looks)
+        return seen
+
+    def overlook(self, points: NDArray[np.bool_]) -> float:
+        """Take in that nothing was detected at some points (N,); returns the likelihood ratio."""
+        before = self.open_share
+        self.told[points] *= OVERLOOKED_LIKELIHOOD_RATIO
         return self.open_share / before
 
     def rule_out(self, ruled_out: NDArray[np.bool_]) -> float:

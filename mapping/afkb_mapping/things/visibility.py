@@ -66,8 +66,24 @@ class Sight:
 
     def sees_through(self, points_xy: NDArray[np.float64], height_m: float) -> NDArray[np.bool_]:
         """(N,) whether depth lies clearly behind points (N, 2), map frame, at a height, m."""
+        behind, z = self._behind(points_xy, height_m)
+        through: NDArray[np.bool_] = behind > MARGIN_M + MARGIN_PER_RANGE * z
+        return through
+
+    def meets(
+        self, points_xy: NDArray[np.float64], height_m: float, within_m: float
+    ) -> NDArray[np.bool_]:
+        """(N,) whether depth agrees with points (N, 2) at a height, no further off than that, m."""
+        behind, z = self._behind(points_xy, height_m)
+        met: NDArray[np.bool_] = np.abs(behind) <= MARGIN_M + MARGIN_PER_RANGE * z
+        return met & (z <= within_m)
+
+    def _behind(
+        self, points_xy: NDArray[np.float64], height_m: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(N,) how far behind each point depth was measured, NaN where it wasn't; its depth, m."""
         if self._depth_m is None:
-            return np.zeros(len(points_xy), dtype=bool)
+            return np.full(len(points_xy), np.nan), np.full(len(points_xy), np.inf)
         fx, fy, cx, cy = self._intrinsics
         heights = np.full(len(points_xy), height_m)
         T = self._T_camera_map
@@ -78,9 +94,8 @@ class Sight:
         v = np.round(fy * y / depths + cy).astype(np.int64)
         rows, cols = self._depth_m.shape
         inside = ahead & (u >= 0) & (u < cols) & (v >= 0) & (v < rows)
-        measured = np.where(inside, self._depth_m[v.clip(0, rows - 1), u.clip(0, cols - 1)], 0.0)
-        through: NDArray[np.bool_] = inside & (measured - z > MARGIN_M + MARGIN_PER_RANGE * z)
-        return through
+        measured = self._depth_m[v.clip(0, rows - 1), u.clip(0, cols - 1)].astype(np.float64)
+        return np.where(inside & (measured > 0), measured - z, np.nan), z
 
 
 @kernel
