@@ -17,7 +17,7 @@ ON_SUPPORT = Table("figures", "ObjectOnSupport", ("object", "given"), suffix="Su
 
 LEAST_ROOMS, LEAST_PAIRS, LEAST_PLACEMENTS = 3, 10, 3
 """Rooms, rooms with both, and placements from which on a figure is stated; the counts have all."""
-LEAST_LIFT, LEAST_P = 2.0, 0.3
+LEAST_LIFT, LEAST_P = 2.0, 0.2
 """A pair is stated where it is so many times likelier than anywhere, and at least so likely."""
 
 
