@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from afkb.flow import Entity, NodeKind, Region, Relation
 from afkb.inference import Network
-from afkb_mapping.predictions.grounding import HEIGHT_TOLERANCE_M
-from afkb_mapping.predictions.predicted_track import PredictedTrack
+from afkb_mapping.predictions.predicted_track import HEIGHT_TOLERANCE_M, PredictedTrack
 from afkb_mapping.things.entities import SURFACE_THICKNESS_M
 from afkb_mapping.things.standing import FOOT_HIDDEN_M, STANDS_WITHIN_M
 from afkb_mapping.things.tracks import ObservedTrack

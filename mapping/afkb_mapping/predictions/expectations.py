@@ -153,7 +153,7 @@ class Expectations:
     def look_for(self, sight: Sight, view: View) -> None:
         """What is seen through, where a prediction says that something is, counts against it."""
         for prediction in self._index.near(*sight.reach):
-            ratio = prediction.where.look(sight, prediction.top_range_m)
+            ratio = prediction.where.look(sight, prediction.tops_looked_at_m)
             self._take_against(prediction, ChangeKind.SEEN_THROUGH, ratio, view)
             if prediction.is_small and prediction in self._index:
                 self._look_closely(prediction, sight, view)

@@ -9,7 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import Hypothesis, NodeKind, Relation, View
-from afkb_mapping.predictions.predicted_track import FURNITURE_M, PredictedTrack
+from afkb_mapping.predictions.predicted_track import (
+    FURNITURE_M,
+    HEIGHT_TOLERANCE_M,
+    PredictedTrack,
+)
 from afkb_mapping.predictions.whereabouts import Whereabouts
 from afkb_mapping.things.tracks import ObservedTrack
 
@@ -17,7 +21,6 @@ BELOW_MARGIN_M = 0.10
 """A support reaches at least this far beyond what stands on it."""
 HIDDEN_FOOT_M = 0.35
 """Where the support itself is hidden, so may be a thing's foot: this much of it at most."""
-HEIGHT_TOLERANCE_M = 0.06
 KIND_OF_ORDER = {1: NodeKind.DUAL, 2: NodeKind.CO_OCCURRENCE}
 
 WALL_STEP_M = 0.05

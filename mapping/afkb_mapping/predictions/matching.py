@@ -5,13 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from afkb.flow import NodeKind, Relation
-from afkb_mapping.predictions.grounding import (
-    BELOW_MARGIN_M,
-    HEIGHT_TOLERANCE_M,
-    HIDDEN_FOOT_M,
-    Walls,
-)
-from afkb_mapping.predictions.predicted_track import PredictedTrack
+from afkb_mapping.predictions.grounding import BELOW_MARGIN_M, HIDDEN_FOOT_M, Walls
+from afkb_mapping.predictions.predicted_track import HEIGHT_TOLERANCE_M, PredictedTrack
 from afkb_mapping.predictions.whereabouts import Whereabouts
 from afkb_mapping.things.tracks import ObservedTrack
 

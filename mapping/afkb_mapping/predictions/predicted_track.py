@@ -14,6 +14,8 @@ from afkb_mapping.things.viewpoints import Viewpoints
 
 Array = NDArray[np.float64]
 
+HEIGHT_TOLERANCE_M = 0.06
+"""How far a top may be from where it is expected: noise of both heights."""
 FURNITURE_M = 0.35
 """What is longer hides floor that scans and looks would show (the ontology's limit of `Small`)."""
 
@@ -57,6 +59,16 @@ class PredictedTrack:
     def probability(self) -> float:
         """That there is such a thing, where it is expected."""
         return self.life.probability
+
+    @property
+    def tops_looked_at_m(self) -> tuple[float, float]:
+        """Lowest and highest top that a look is asked about, m.
+
+        What carries things has its top at their feet, not above: a flat look over a table sees
+        through the air on it.
+        """
+        low, high = self.top_range_m
+        return low, high - HEIGHT_TOLERANCE_M if self.relation is Relation.BELOW else high
 
     @property
     def is_small(self) -> bool:
