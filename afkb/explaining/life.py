@@ -24,6 +24,7 @@ WORDS = {
     ChangeKind.SIGHTED: "seen",
     ChangeKind.SEEN_THROUGH: "seen through",
     ChangeKind.OVERLOOKED: "in clear view and not detected",
+    ChangeKind.SURROUNDED: "told by what is around it",
     ChangeKind.AGED: "time passed",
     ChangeKind.PREDICTED: "predicted",
     ChangeKind.PREDICTED_AGAIN: "predicted again",

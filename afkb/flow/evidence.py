@@ -32,6 +32,7 @@ class ChangeKind(StrEnum):
     SIGHTED = "Sighted"
     SEEN_THROUGH = "SeenThrough"
     OVERLOOKED = "Overlooked"
+    SURROUNDED = "Surrounded"
     AGED = "Aged"
     PREDICTED = "Predicted"
     PREDICTED_AGAIN = "PredictedAgain"

@@ -14,6 +14,14 @@ OVERLOOKED_LIKELIHOOD_RATIO = 0.55
 """P(not detected | there) over P(not detected | a false cue): detectors find about half of the
 things they have in clear view, and repeat few of their errors from elsewhere."""
 
+MULTIPLYING = frozenset((
+    ChangeKind.SEEN_THROUGH,
+    ChangeKind.OVERLOOKED,
+    ChangeKind.WALLED_OFF,
+    ChangeKind.SURROUNDED,
+))  # fmt: skip
+"""Steps that multiply the odds by a likelihood ratio."""
+
 
 def after(
     kind: ChangeKind, evidence: float, before: float | None, rule: UpdateRule = log_odds
@@ -29,7 +37,7 @@ def after(
         return evidence
     if kind is ChangeKind.SIGHTED:
         return log_odds(before, evidence)
-    if kind in (ChangeKind.SEEN_THROUGH, ChangeKind.OVERLOOKED, ChangeKind.WALLED_OFF):
+    if kind in MULTIPLYING:
         return against(before, evidence)
     if kind in (ChangeKind.AGED, ChangeKind.EVIDENCE_GONE):
         return before * evidence

@@ -13,6 +13,7 @@ from afkb.flow import (
     Closure,
     Doorway,
     Entity,
+    NodeKind,
     OccupancyGrid,
     RobotPlace,
     Room,
@@ -32,7 +33,7 @@ from afkb_mapping.rooms.graph import connections, doorways_of
 from afkb_mapping.rooms.lookup import RoomLookup, room_id
 from afkb_mapping.rooms.rooms import Segmentation, divide_by_purpose, segment_rooms
 from afkb_mapping.rooms.two_purposes import second_purpose
-from afkb_mapping.things.entities import observed_entities
+from afkb_mapping.things.entities import doubtful_entities, observed_entities
 from afkb_mapping.things.recognition import recognised
 from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.visits.bounds_now import bound_now, doorway_now
@@ -75,6 +76,7 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
     entities = [*observed, *_expected(content, known)]
     segmentation, evidence = _parted(content, entities, seen_doorways)
     lookup = RoomLookup(segmentation, content.grid)
+    entities += doubtful_entities(content.tracks, content.network)
     supports = supports_expected(content.predictions, content.tracks)
     entities = [
         replace(
@@ -85,6 +87,8 @@ def snapshot(content: MapContent, T_map_source: NDArray[np.float64]) -> Topologi
         for e in entities
     ]
     entities = recognised(entities, _counts_by_room(segmentation, evidence), content.network)
+    observed = [e for e in entities if e.kind is NodeKind.OBSERVED]
+    known = {e.id for e in observed}
     places = [_robot_place(p, lookup) for p in content.places]
     now = max((stamp for stamp, _ in content.trajectory), default=0.0)
     standing = [bound_now(b, content.grid, now) for b in content.bounds]

@@ -73,3 +73,28 @@ def test_own_affordances_tell_of_the_room_but_not_of_the_thing(network: Network)
     assert own
     (alone,) = standing_together([table], lambda _: dict.fromkeys(own, 1), network)
     assert alone.room == pytest.approx(network.room_posterior(dict.fromkeys(own, 0)))
+
+
+def doubtful_mug(supported_by: str | None) -> Entity:
+    mug = board("mug", 0.83)
+    affordances = {"ContainAbility": 0.9}
+    at = {"size_xyz": (0.11, 0.1, 0.1), "supported_by": supported_by, "affordances": affordances}
+    return dataclasses.replace(mug, existence=0.45, observations=3, polygon_xy=None, **at)
+
+
+def test_a_doubtful_mug_on_a_table_is_there_and_one_on_nothing_is_not(network: Network) -> None:
+    table = dataclasses.replace(board("table", 0.74), existence=0.97, observations=5)
+    on_table, alone = (
+        {e.id: e for e in recognised([table, doubtful_mug(on)], lambda _: {}, network)}
+        for on in ("table", None)
+    )
+    assert on_table["mug"].existence > 0.5
+    assert on_table["mug"].history[-1].after == on_table["mug"].existence
+    assert on_table["table"].existence != alone["table"].existence
+    assert "mug" not in alone
+
+
+def test_what_followed_from_a_vanished_thing_alone_goes_with_it(network: Network) -> None:
+    predicted = entity("p", NodeKind.DUAL, predicted_from=("mug",))
+    told = recognised([doubtful_mug(None), predicted], lambda _: {}, network)
+    assert told == []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 from afkb.flow import Entity, NodeKind
 from afkb.inference import Network
@@ -14,6 +14,8 @@ from afkb_mapping.things.tracks import ObservedTrack
 from afkb_mapping.visits.persistence import hazard_of
 
 EXISTS_FROM = 0.5
+DOUBTFUL_FROM = 0.2
+"""At odds of one to four, surroundings seldom make a thing of what was seen."""
 CONVINCING = 0.4
 """A thing whose views, all in all, doubt more than this that it affords anything is none: furniture
 that looks like a thing from everywhere, or a false cue that a few views gave."""
@@ -25,9 +27,20 @@ SMALLEST_SURFACE_M2 = 0.02
 SURFACE_THICKNESS_M = 0.02
 
 
-def observed_entities(tracks: Sequence[ObservedTrack], network: Network) -> list[Entity]:
+def doubtful_entities(tracks: Sequence[ObservedTrack], network: Network) -> list[Entity]:
+    """Entities of the tracks that are not sure enough by themselves, but may be by context."""
+    doubtful = {t.id for t in tracks if is_considered(t) and not is_kept(t)}
+    found = observed_entities(tracks, network, is_considered)
+    return [e for e in found if e.id in doubtful]
+
+
+def observed_entities(
+    tracks: Sequence[ObservedTrack],
+    network: Network,
+    keep: Callable[[ObservedTrack], bool] | None = None,
+) -> list[Entity]:
     """Entities (V_ao) of the tracks that are sure enough, in order of discovery."""
-    kept = [t for t in tracks if is_kept(t)]
+    kept = [t for t in tracks if (keep or is_kept)(t)]
     index = TrackIndex.of(kept)
     held = {t.id: holder for t in kept if t.is_surface and (holder := _holder(t, index))}
     lids = {held[t.id].id: t for t in kept if t.id in held and _is_lid(t, held[t.id])}
@@ -42,6 +55,15 @@ def observed_entities(tracks: Sequence[ObservedTrack], network: Network) -> list
         for t in kept
         if t.is_floor or not t.is_surface or outlines[t.id].area_m2 >= SMALLEST_SURFACE_M2
     ]
+
+
+def is_considered(track: ObservedTrack) -> bool:
+    """Whether its surroundings may make a track sure enough."""
+    return (
+        bool(track.footprint)
+        and track.existence >= DOUBTFUL_FROM
+        and track.conviction >= CONVINCING
+    )
 
 
 def is_kept(track: ObservedTrack) -> bool:

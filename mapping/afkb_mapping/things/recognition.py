@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from shapely import STRtree
 from shapely.geometry import Polygon
 
-from afkb.flow import Entity, NodeKind
+from afkb.flow import Change, ChangeKind, Entity, NodeKind
 from afkb.inference import Network
+from afkb.inference.existence import after
 from afkb.inference.recognition import CountsOf, is_floor, standing_together
+from afkb_mapping.things.entities import EXISTS_FROM, SUSTAINED
 
 BOARDS_APART_M = 0.10
 """Boards of one thing are so far apart at least; nearer surfaces are one, seen twice."""
@@ -27,6 +29,17 @@ def recognised(entities: Sequence[Entity], counts_of: CountsOf, network: Network
     entities = _boards_of_one_thing(entities)
     told = {e.id: e for e in entities}
     for together in standing_together(entities, counts_of, network):
+        context = network.joint.recognise(together.things, together.room).context
+        for entity, ratio in zip(together.entities, context.tolist(), strict=True):
+            told[entity.id] = _in_context(entity, ratio)
+    doubtful = {e.id for e in entities if not _is_sure(e)}
+    return _named(_still_there(list(told.values()), doubtful), counts_of, network)
+
+
+def _named(entities: Sequence[Entity], counts_of: CountsOf, network: Network) -> list[Entity]:
+    """With the categories that the network tells of all that is there."""
+    told = {e.id: e for e in entities}
+    for together in standing_together(entities, counts_of, network):
         shares = network.joint.recognise(together.things, together.room).shares
         for entity, share in zip(together.entities, shares.tolist(), strict=True):
             belief = dict(zip(network.objects.categories, share, strict=True))
@@ -35,6 +48,37 @@ def recognised(entities: Sequence[Entity], counts_of: CountsOf, network: Network
                 entity, category_belief=belief, movability=movability, matching_weight=weight
             )
     return list(told.values())
+
+
+def _in_context(entity: Entity, ratio: float) -> Entity:
+    """Its existence by its surroundings, too: both ways, table and book (paper §II.C)."""
+    before = entity.existence
+    now = after(ChangeKind.SURROUNDED, ratio, before)
+    step = Change(ChangeKind.SURROUNDED, ratio, before, now, entity.last_seen)
+    return replace(entity, existence=now, history=(*entity.history, step))
+
+
+def _still_there(entities: Sequence[Entity], doubtful: Collection[str]) -> list[Entity]:
+    """Without what was and stays doubtful, and without what followed from that alone.
+
+    What was sure by itself stays, less sure: what carries it may not have been in view yet.
+    """
+    observed = [e for e in entities if e.kind is NodeKind.OBSERVED]
+    gone = {e.id for e in observed if e.id in doubtful and not _is_sure(e)}
+    kept = []
+    for e in entities:
+        anchors = tuple(a for a in e.predicted_from if a not in gone)
+        if e.id in gone or (e.kind is not NodeKind.OBSERVED and e.predicted_from and not anchors):
+            continue
+        on = None if e.supported_by in gone else e.supported_by
+        whole = None if e.part_of in gone else e.part_of
+        kept.append(replace(e, predicted_from=anchors, supported_by=on, part_of=whole))
+    return kept
+
+
+def _is_sure(entity: Entity) -> bool:
+    seen = entity.observations > 1 or entity.existence >= SUSTAINED
+    return is_floor(entity) or (entity.existence >= EXISTS_FROM and seen)
 
 
 def _boards_of_one_thing(entities: Sequence[Entity]) -> list[Entity]:
