@@ -60,13 +60,15 @@ class RoomNetwork:
         return np.repeat(self.prior[:, None] / shares, shares, axis=1)
 
     def likelihood(self, counts: Mapping[str, int]) -> Array:
-        """P(counts | room, share seen), (R, S); ones where nothing is counted.
+        """P(counts | room, share seen), (R, S), up to one factor; ones where nothing is counted.
 
         Raises `EvidenceError` for a name that is no counted evidence class or a bad count.
         """
         likelihood = np.ones((len(self.rooms), len(self.shares)))
         for name in sorted(counts):
-            likelihood *= self.counts[self.known(name)][bin_of(name, counts[name])]
+            likelihood = likelihood * self.counts[self.known(name)][bin_of(name, counts[name])]
+            # Hundreds of classes would leave nothing of the smallest numbers.
+            likelihood = likelihood / (likelihood.max() or 1.0)
         return likelihood
 
     def known(self, name: str) -> str:
