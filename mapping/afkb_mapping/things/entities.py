@@ -58,9 +58,10 @@ def observed_entities(
 
 
 def is_considered(track: ObservedTrack) -> bool:
-    """Whether its surroundings may make a track sure enough."""
+    """Whether its surroundings may make a track sure enough: not where it was seen to be gone."""
     return (
-        bool(track.footprint)
+        not track.empty_from.seen_from
+        and bool(track.footprint)
         and track.existence >= DOUBTFUL_FROM
         and track.conviction >= CONVINCING
     )
