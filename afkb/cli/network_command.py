@@ -31,6 +31,8 @@ def network(
 
     compiled = network_of(state_of(ctx).host.knowledge_base)
     if out is not None:
+        if not out.absolute().parent.is_dir():
+            raise KnowledgeError(f"{out}: can't be written: no such folder; choose --out")
         try:
             compiled.write_bif(out)
         except OSError as error:
