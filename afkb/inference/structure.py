@@ -36,6 +36,7 @@ def structure(network: Network) -> tuple[Node, ...]:
         *_features(network),
         Node(ROOM, "what a room is for", (), tuple(network.rooms.rooms)),
         Node(SHARE, "how much of it was seen", (), ()),
+        *_placed(kb),
         *_counts(network),
         *_contents(network.contents_network, kb),
         *_relations(network),
@@ -48,6 +49,15 @@ def _features(network: Network) -> Iterator[Node]:
         yield Node(name, "affordance of a thing", (CATEGORY,), tuple(told))
     for name in network.objects.measures:
         yield Node(name, "measure of a thing", (CATEGORY,), tuple(network.objects.categories))
+
+
+def _placed(kb: AfNet) -> Iterator[Node]:
+    """What a thing is, beside others of the room: the same table as often as there are things."""
+    in_rooms = tuple(f.name for f in kb.objects_in_rooms)
+    yield Node(f"{CATEGORY}InRoom", "what a thing is, by its room", (ROOM,), in_rooms)
+    carried = tuple(f.name for f in kb.objects_on_supports)
+    parents = (f"{CATEGORY}InRoom", f"{CATEGORY}OfSupport")
+    yield Node(f"{CATEGORY}OnSupport", "what a thing is, by its support", parents, carried)
 
 
 def _counts(network: Network) -> Iterator[Node]:
