@@ -36,7 +36,7 @@ def run(words: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, str,
 
 
 def test_every_row_gets_a_posterior(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    train = write(tmp_path / "train.csv", SEEN, 6)
+    train = write(tmp_path / "train.csv", SEEN, 90)
     judged = write(tmp_path / "asked.csv", SEEN | {"office": "", "porch": "unheard of:1"}, 1)
     status, out, _ = run(["rooms", str(judged), "--train", str(train), "--json"], capsys)
     result = json.loads(out)["rooms"]
