@@ -53,7 +53,8 @@ def checked(
     stations, poses = survey.stations, survey.poses
     onto = surface_around(stations, poses, earlier)
     seen = surface_around(stations, poses, later, None if weight else (later,))
-    by_laser = stations[earlier].has_laser and stations[later].has_laser
+    # Surroundings are of several views, seen from elsewhere: no match of them is a laser's.
+    by_laser = not weight and stations[earlier].has_laser and stations[later].has_laser
     verdict = verified(onto, stations[later], seen, T_start, by_laser)
     return Proposal(
         kind, earlier, later, weight or verdict.overlap, verdict.constraint, verdict.reason

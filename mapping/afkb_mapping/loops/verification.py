@@ -43,7 +43,7 @@ def verified(
     """Lay what is `seen` about a station on a surface, from a start (4, 4) on, and judge the fit.
 
     Both in base frames; `seen` holds the station's own surface and what its neighbours add.
-    `by_laser`: whether a laser saw both.
+    `by_laser`: whether both are single scans of a laser, which fit to its own noise.
     """
     if len(seen) < LEAST_POINTS or len(onto) < LEAST_POINTS:
         return Verdict(None, "no walls or furniture in sight to verify it by")
