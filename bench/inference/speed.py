@@ -15,8 +15,6 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from pgmpy.inference import VariableElimination
-
 from afkb.inference import Network, network_of
 from afkb.inference.joint import SeenThing
 from afkb.inference.pgm import COUNT_STATES, ROOM, contents_model, room_model
@@ -78,6 +76,8 @@ def measured(host: PluginHost) -> dict[str, dict[str, float]]:
 
 def by_pgmpy(network: Network, counts: Mapping[str, int]) -> dict[str, dict[str, float]]:
     """The same questions, put to pgmpy's variable elimination on the same tables."""
+    from pgmpy.inference import VariableElimination  # Loaded for this part alone: it takes seconds.
+
     rooms = VariableElimination(room_model(network.rooms))
     evidence = {name: COUNT_STATES[bin_of(name, n)] for name, n in counts.items()}
     few = network.contents_network.among(SEEN)
