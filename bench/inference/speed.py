@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
+
 from afkb.inference import Network, network_of
 from afkb.inference.joint import SeenThing
 from afkb.inference.pgm import COUNT_STATES, ROOM, contents_model, room_model
