@@ -13,6 +13,8 @@ from afkb.inference.placement import PlacementNetwork
 
 Carriers = Sequence[int | None]
 """For each thing the index of the one that carries it, None where there is none."""
+CERTAIN_LOG = 300.0
+"""Greatest logarithm of a ratio of odds: sure beyond doubt, and finite under an exponential."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,7 +72,7 @@ def _told(prior: Array, evidence: Array, room: Array, joint: Array, log_room: Ar
         without = np.log(now)[None] - with_it
         context = -_log_sum(np.where(now > 0, without, -np.inf), axis=1)
         context -= np.log(evidence @ prior)
-    return Recognised(within @ now, now, np.exp(context))
+    return Recognised(within @ now, now, np.exp(np.clip(context, -CERTAIN_LOG, CERTAIN_LOG)))
 
 
 def leaves_first(on: Carriers) -> list[int]:

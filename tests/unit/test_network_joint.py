@@ -153,6 +153,13 @@ def test_tables_and_books_raise_each_other(network: Network) -> None:
     assert together.shares[0, desk] > apart.shares[0, desk]
 
 
+def test_a_table_under_ever_so_many_books_is_sure_and_finite(network: Network) -> None:
+    books = [dataclasses.replace(BOOK, on=0, stands="Support")] * 600
+    told = network.joint.recognise([TABLE, *books])
+    assert np.isfinite(told.context).all()
+    assert told.context[0] > 1e100
+
+
 def test_a_board_over_another_is_a_shelfs(network: Network) -> None:
     one = probability(network, [SHELF], 0, "Shelf")
     assert probability(network, [dataclasses.replace(SHELF, boarded=True)], 0, "Shelf") > 3 * one
