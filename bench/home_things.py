@@ -51,7 +51,7 @@ def pairs(nodes: list[dict[str, Any]], truth: dict[str, Any]) -> list[Pair]:
 
 def overlap(node: dict[str, Any], thing: dict[str, Any], word: str) -> float:
     """Intersection over union of the outlines where node and thing may be one, else 0."""
-    if not _same_height(node, thing, word):
+    if not same_height(node, thing, word):
         return 0.0
     outline = outline_of(node)
     true = box(*thing["min"][:2], *thing["max"][:2])
@@ -70,7 +70,8 @@ def outline_of(node: dict[str, Any]) -> Polygon:
     return affinity.translate(turned, node["x"], node["y"])
 
 
-def _same_height(node: dict[str, Any], thing: dict[str, Any], word: str) -> bool:
+def same_height(node: dict[str, Any], thing: dict[str, Any], word: str) -> bool:
+    """Whether a surface lies at a thing's top, or what is none rises as a thing does."""
     low, high = thing["min"][2], thing["max"][2]
     if "SupportAbility" in node["affords"]:
         if word.startswith("shelf"):

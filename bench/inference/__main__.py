@@ -17,6 +17,7 @@ PARTS = (
     "homes",
     "learning",
     "things",
+    "context",
     "predicted",
     "rules",
     "finding",

@@ -67,7 +67,7 @@ def judged(
     start = truth["views"][0]
     T_world_map = T_from_xy_yaw(start["x"], start["y"], start["yaw"])
     beliefs = _beliefs(found, network_of(kb))
-    nodes = [_node(e) for e in found.entities if e.id in beliefs]
+    nodes = [node_of(e) for e in found.entities if e.id in beliefs]
     rows = []
     for pair in pairs(in_world(nodes, T_world_map), truth):
         right = meant(pair.word, kb)
@@ -94,7 +94,8 @@ def _beliefs(found: TopologicalMap, network: Network) -> dict[str, dict[str, Map
     return beliefs
 
 
-def _node(entity: Entity) -> dict[str, Any]:
+def node_of(entity: Entity) -> dict[str, Any]:
+    """An observed entity as `map.json` has it, as far as its place and outline go."""
     assert entity.kind is NodeKind.OBSERVED
     x, y, z = entity.position_xyz
     return {

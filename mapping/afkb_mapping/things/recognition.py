@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
 from shapely import STRtree
@@ -21,19 +21,37 @@ SAME_OUTLINE = 0.6
 through what stands on it and in part hidden by the one above."""
 
 
-def recognised(entities: Sequence[Entity], counts_of: CountsOf, network: Network) -> list[Entity]:
-    """The entities with their categories told by room and support, and boards put together.
+Surrounding = Callable[[Sequence[Entity], CountsOf, Network], list[Entity]]
+"""What tells how far things exist by their surroundings: the same entities, surer or less sure."""
+
+
+def in_context(entities: Sequence[Entity], counts_of: CountsOf, network: Network) -> list[Entity]:
+    """The entities, each as sure as its surroundings leave it.
 
     What stands on each other is told together; of the room counts what else is in it (§II.F).
     """
-    entities = _boards_of_one_thing(entities)
     told = {e.id: e for e in entities}
     for together in standing_together(entities, counts_of, network):
         context = network.joint.recognise(together.things, together.room).context
         for entity, ratio in zip(together.entities, context.tolist(), strict=True):
-            told[entity.id] = _in_context(entity, ratio)
+            told[entity.id] = _surrounded(entity, ratio)
+    return list(told.values())
+
+
+def recognised(
+    entities: Sequence[Entity],
+    counts_of: CountsOf,
+    network: Network,
+    surrounding: Surrounding = in_context,
+) -> list[Entity]:
+    """The entities with their categories told by room and support, and boards put together.
+
+    `surrounding` says how far each exists where it is; what stays doubtful is left out.
+    """
+    entities = _boards_of_one_thing(entities)
     doubtful = {e.id for e in entities if not _is_sure(e)}
-    return _named(_still_there(list(told.values()), doubtful), counts_of, network)
+    told = surrounding(entities, counts_of, network)
+    return _named(_still_there(told, doubtful), counts_of, network)
 
 
 def _named(entities: Sequence[Entity], counts_of: CountsOf, network: Network) -> list[Entity]:
@@ -50,7 +68,7 @@ def _named(entities: Sequence[Entity], counts_of: CountsOf, network: Network) ->
     return list(told.values())
 
 
-def _in_context(entity: Entity, ratio: float) -> Entity:
+def _surrounded(entity: Entity, ratio: float) -> Entity:
     """Its existence by its surroundings, too: both ways, table and book (paper §II.C)."""
     before = entity.existence
     now = after(ChangeKind.SURROUNDED, ratio, before)
