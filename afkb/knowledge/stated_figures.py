@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 from afkb.knowledge.facts import Facts
 from afkb.knowledge.item_reading import common
@@ -61,19 +62,19 @@ def read_object_in_room(facts: Facts, iri: str) -> ObjectInRoom:
 
 def read_object_with_object(facts: Facts, iri: str) -> ObjectWithObject:
     """One figure of what is found together in a room."""
-    return ObjectWithObject(
-        **common(facts, iri),
-        category=fragment(facts.text(iri, "ofCategory")),
-        given=fragment(facts.text(iri, "givenCategory")),
-        probability=facts.probability(iri, "probability"),
-        successes=facts.number(iri, "successes", default=0.0),
-        trials=facts.number(iri, "trials", default=0.0),
-    )
+    return _given(ObjectWithObject, facts, iri)
 
 
 def read_object_on_support(facts: Facts, iri: str) -> ObjectOnSupport:
     """One figure of what things are put on."""
-    return ObjectOnSupport(
+    return _given(ObjectOnSupport, facts, iri)
+
+
+G = TypeVar("G", ObjectWithObject, ObjectOnSupport)
+
+
+def _given(kind: type[G], facts: Facts, iri: str) -> G:
+    return kind(
         **common(facts, iri),
         category=fragment(facts.text(iri, "ofCategory")),
         given=fragment(facts.text(iri, "givenCategory")),

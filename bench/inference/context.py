@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
@@ -31,17 +32,18 @@ from afkb_mapping import snapshot
 from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_mapping.things.recognition import in_context, recognised
 from bench.beliefs import word_of
-from bench.detectors.data import Home, homes_in
+from bench.detectors.data import Home
 from bench.home_things import outline_of, overlap, same_height, seen_well
 from bench.homes import NO_SUPPORT, in_world
 from bench.inference import things
 from bench.inference.context_scores import SURFACES, THINGS, WITH, WITHOUT, by_kind
-from bench.inference.rebuilt import mapped, rebuilt
+from bench.inference.home_maps import add_arguments, home_maps
+from bench.inference.rebuilt import rebuilt
 
 WITHIN = 0.6
 """From this share of its outline at tops of the truth on a surface is right."""
 BESIDE_M = 0.05
-add_arguments = things.add_arguments
+__all__ = ["add_arguments", "run", "table"]
 
 
 @dataclass(frozen=True)
@@ -56,15 +58,10 @@ class Inputs:
 def run(args: argparse.Namespace) -> dict[str, Any]:
     """Per kind, of all homes together and of each: scores without and with context."""
     host = PluginHost()
-    if len(args.map) != len(args.home):
-        raise SystemExit("error: name one --home for each --map")
     nodes: list[dict[str, Any]] = []
     well: list[dict[str, Any]] = []
-    given: list[tuple[Home, Any]] = [
-        (homes_in(at, host)[0], folder) for folder, at in zip(args.map, args.home, strict=True)
-    ]
-    for home, folder in given or [(home, None) for home in homes_in(args.homes, host)]:
-        own = judged(inputs_of(home, folder, host, args.stride), home)
+    for folder, home in home_maps(args, host):
+        own = judged(inputs_of(folder, host), home)
         nodes += own
         well += well_seen(own, home)
     names = list(dict.fromkeys(node["home"] for node in nodes))
@@ -74,8 +71,8 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def inputs_of(home: Home, folder: Any, host: PluginHost, stride: int) -> Inputs:
-    """What the last map that is made of a home tells things by."""
+def inputs_of(folder: Path, host: PluginHost) -> Inputs:
+    """What a map tells things by, when it is built anew."""
     last: list[Inputs] = []
 
     def listening(entities: Sequence[Entity], counts: CountsOf, network: Network) -> list[Entity]:
@@ -83,10 +80,7 @@ def inputs_of(home: Home, folder: Any, host: PluginHost, stride: int) -> Inputs:
         return recognised(entities, counts, network)
 
     with patch.object(snapshot, "recognised", listening):
-        if folder is None:
-            mapped(home.folder / "bag", host, stride)
-        else:
-            rebuilt(folder, host)
+        rebuilt(folder, host)
     return last[0]
 
 

@@ -16,21 +16,19 @@ largest support first; for Brier's score: the share of true regions, always.
 from __future__ import annotations
 
 import argparse
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from afkb.finding import Region, Surroundings, regions, somewhere
 from afkb.plugins.host import PluginHost
-from afkb_mapping.run import make_map
-from afkb_mapping.run_record import Settings
-from bench.detectors.data import NoData, data_folder
 from bench.inference.grasp_truth import compared
+from bench.inference.home_maps import add_arguments, home_maps
 from bench.inference.true_places import ASKED, TruePlaces
+
+__all__ = ["add_arguments", "run", "table"]
 
 HOWS = ("thing", "support", "room")
 LISTED = 0.001
@@ -146,43 +144,24 @@ def _calibration_error(p: Any, true: Any) -> float:
     return sum(b["regions"] * abs(b["told"] - b["true"]) for b in bins) / len(p)
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Homes and, if they are mapped already, their maps."""
-    parser.add_argument("--home", type=Path, action="append", help="folder; repeatable")
-    parser.add_argument("--map", type=Path, action="append", help="of each home in turn")
-
-
 def run(args: argparse.Namespace) -> dict[str, Any]:
     """By home, and of all homes together, as it stands and hidden."""
-    homes = args.home or sorted(p.parent for p in (data_folder() / "homes").glob("*/truth.json"))
-    if not homes or not all((home / "truth.json").is_file() for home in homes):
-        raise NoData("no homes with truth.json; name some, or set AFKB_DATA")
     host, kb = PluginHost(), PluginHost().knowledge_base
     asked: dict[str, dict[str, list[Asked]]] = {}
     seen: list[TruePlaces] = []
-    with tempfile.TemporaryDirectory() as scratch:
-        for i, home in enumerate(homes):
-            told = (args.map or [])[i : i + 1]
-            folder = told[0] if told else _mapped(host, home, Path(scratch) / home.name)
-            places = TruePlaces.of(home, folder)
-            seen.append(places)
-            asked[home.name] = {
-                "as it stands": [Asked.of(c, places.around, places, kb) for c in ASKED],
-                "hidden": [
-                    Asked.of(c, hidden(c, places.around, places), places, kb) for c in ASKED
-                ],
-            }
+    for folder, home in home_maps(args, host):
+        places = TruePlaces.of(home.folder, folder)
+        seen.append(places)
+        asked[home.name] = {
+            "as it stands": [Asked.of(c, places.around, places, kb) for c in ASKED],
+            "hidden": [Asked.of(c, hidden(c, places.around, places), places, kb) for c in ASKED],
+        }
     every = {way: [a for home in asked.values() for a in home[way]] for way in WAYS}
     found: dict[str, Any] = {
         name: {way: scores(home[way], hows) for way, hows in WAYS.items()}
         for name, home in {"all": every, **asked}.items()
     }
     return {**found, "grasps": compared(seen, kb)}
-
-
-def _mapped(host: PluginHost, home: Path, out: Path) -> Path:
-    make_map(host, Settings(uri=str(home / "bag"), out=out))
-    return out
 
 
 def table(result: dict[str, Any]) -> Iterator[str]:

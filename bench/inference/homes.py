@@ -14,7 +14,6 @@ from __future__ import annotations
 import argparse
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from afkb.figures import Names
@@ -22,8 +21,11 @@ from afkb.flow import Room, TopologicalMap
 from afkb.ontology.bundled import bundled_ontology
 from afkb.plugins.host import PluginHost
 from afkb_mapping.rooms.opinions import with_opinions
-from bench.detectors.data import Home, data_folder, homes_in
-from bench.inference.rebuilt import mapped, rebuilt
+from bench.detectors.data import Home
+from bench.inference.home_maps import add_arguments, home_maps
+from bench.inference.rebuilt import rebuilt
+
+__all__ = ["add_arguments", "run", "table"]
 
 AFFORDANCES = "affordances"
 ALSO_RIGHT = {"ChildsRoom": {"Bedroom"}}
@@ -32,26 +34,12 @@ MS = 1000
 """Views of the map and of the truth are paired by their stamps, to a millisecond."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Where the homes are, and which maps of them there are already."""
-    parser.add_argument("--homes", type=Path, default=data_folder() / "homes")
-    parser.add_argument("--map", type=Path, action="append", default=[], help="map of a --home")
-    parser.add_argument("--home", type=Path, action="append", default=[])
-    parser.add_argument("--stride", type=int, default=1, help="map every N-th view")
-
-
 def run(args: argparse.Namespace) -> dict[str, Any]:
     """A row per true room, and how many are right by each classifier."""
     host = PluginHost()
-    if len(args.map) != len(args.home):
-        raise SystemExit("error: name one --home for each --map")
     rows: list[dict[str, Any]] = []
-    if args.map:
-        for folder, at in zip(args.map, args.home, strict=True):
-            rows += _judged(rebuilt(folder, host), homes_in(at, host)[0], host)
-    else:
-        for home in homes_in(args.homes, host):
-            rows += _judged(mapped(home.folder / "bag", host, args.stride), home, host)
+    for folder, home in home_maps(args, host):
+        rows += _judged(rebuilt(folder, host), home, host)
     return {"rooms": rows, "summary": summary(rows)}
 
 

@@ -17,59 +17,35 @@ Calibration is over all steps of all their lives, each weighing the same.
 from __future__ import annotations
 
 import argparse
-import tempfile
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from afkb.plugins.host import PluginHost
-from afkb_mapping.run import make_map
-from afkb_mapping.run_record import Settings
-from bench.detectors.data import Home, data_folder, homes_in
 from bench.inference.blinded import blinded, nothing, tops_of_tables
+from bench.inference.home_maps import add_arguments, home_maps
 from bench.inference.predicted_truth import Predicted, predictions_of
+
+__all__ = ["add_arguments", "run", "table"]
 
 THRESHOLDS = (0.7, 0.65, 0.5)
 EDGES = (0.0, 0.2, 0.4, 0.5, 0.65, 0.7, 0.8, 1.0)
 WAYS = {"as it was seen": nothing, "tables hidden": tops_of_tables}
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Where the homes are, and which maps of them there are already."""
-    parser.add_argument("--homes", type=Path, default=data_folder() / "homes")
-    parser.add_argument("--map", type=Path, action="append", default=[], help="map of a --home")
-    parser.add_argument("--home", type=Path, action="append", default=[])
-    parser.add_argument("--stride", type=int, default=1, help="map every N-th view")
-
-
 def run(args: argparse.Namespace) -> dict[str, Any]:
     """Scores by what was hidden, and every prediction."""
-    if len(args.map) != len(args.home):
-        raise SystemExit("error: name one --home for each --map")
     host = PluginHost()
     told: dict[str, list[Predicted]] = defaultdict(list)
-    for folder, home in maps_of(args, host):
+    for folder, home in home_maps(args, host):
         for way, hides in WAYS.items():
             found = blinded(folder, host, hides)
             truth, kb = home.truth, host.knowledge_base
             told[way] += predictions_of(found, truth, home.name, kb)
     return {way: scores(predictions) for way, predictions in told.items()}
-
-
-def maps_of(args: argparse.Namespace, host: PluginHost) -> Iterator[tuple[Path, Home]]:
-    """The maps that are named, or else of all homes, made now, each with its home."""
-    for folder, at in zip(args.map, args.home, strict=True):
-        yield folder, homes_in(at, host)[0]
-    for home in [] if args.map else homes_in(args.homes, host):
-        with tempfile.TemporaryDirectory() as scratch:
-            out = Path(scratch) / "map"
-            bag = str(home.folder / "bag")
-            make_map(host, Settings(uri=bag, out=out, stride=args.stride))
-            yield out, home
 
 
 def scores(told: Sequence[Predicted]) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
 from afkb.flow import TopologicalMap
@@ -12,8 +11,7 @@ from afkb_mapping.crew import Crew
 from afkb_mapping.memory.recollection import Recollection
 from afkb_mapping.memory.storing import memory_of
 from afkb_mapping.perception import Perception
-from afkb_mapping.run import make_map
-from afkb_mapping.run_record import Settings, Stages
+from afkb_mapping.run_record import Stages
 
 
 def rebuilt(folder: Path, host: PluginHost) -> TopologicalMap:
@@ -34,10 +32,3 @@ def rebuilt(folder: Path, host: PluginHost) -> TopologicalMap:
         network_of(host.knowledge_base),
     )
     return crew.finish(visit.T_map_source)
-
-
-def mapped(recording: Path, host: PluginHost, stride: int = 1) -> TopologicalMap:
-    """The map of a recording, as `afkb map` makes it."""
-    with tempfile.TemporaryDirectory() as scratch:
-        settings = Settings(uri=str(recording), out=Path(scratch) / "map", stride=stride)
-        return make_map(host, settings).topological_map

@@ -29,9 +29,10 @@ import numpy as np
 from afkb.inference.update_rules import RULES, in_part, log_odds
 from afkb.knowledge import AfNet
 from afkb.plugins.host import PluginHost
-from bench.detectors.data import data_folder
+from bench.detectors.data import NoData, data_folder
+from bench.inference import home_maps
 from bench.inference.blinded import blinded, nothing
-from bench.inference.predicted import calibration, maps_of
+from bench.inference.predicted import calibration
 from bench.inference.predicted_truth import Predicted, predictions_of
 
 MOST = 8
@@ -44,16 +45,13 @@ REPEATED = (0.0, 0.5, 1.0)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The table of rooms, and maps of homes; without maps the recordings are left out."""
+    """The table of rooms, and maps of homes."""
+    home_maps.add_arguments(parser)
     parser.add_argument("--rooms", type=Path, default=data_folder() / "rooms" / "hm3d_regions.csv")
-    parser.add_argument("--map", type=Path, action="append", default=[], help="map of a --home")
-    parser.add_argument("--home", type=Path, action="append", default=[])
 
 
 def run(args: argparse.Namespace) -> dict[str, Any]:
     """Each question's answer, by rule."""
-    if len(args.map) != len(args.home):
-        raise SystemExit("error: name one --home for each --map")
     kb = AfNet()
     dual = max(d.strength for d in kb.duals if d.relation == "below")
     near = max(c.strength for c in kb.co_occurrences if c.is_rule)
@@ -61,7 +59,7 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
         "saturation": {rule: saturation(rule, (dual, near)) for rule in RULES},
         "rooms": of_rooms(args.rooms, near) if args.rooms.is_file() else {},
         "simulated": {rule: simulated(rule, dual) for rule in RULES},
-        "recordings": of_recordings(args) if args.map else {},
+        "recordings": of_recordings(args),
     }
 
 
@@ -165,7 +163,10 @@ def of_recordings(args: argparse.Namespace) -> dict[str, Any]:
     """Calibration over all steps of the predictions of homes, by rule."""
     host = PluginHost()
     found = {}
-    homes = list(maps_of(args, host))
+    try:
+        homes = home_maps.home_maps(args, host)
+    except NoData:
+        return {}
     for rule in RULES:
         told: list[Predicted] = []
         for folder, home in homes:

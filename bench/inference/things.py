@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,38 +23,24 @@ from afkb.inference.recognition import standing_together
 from afkb.plugins.host import PluginHost
 from afkb_mapping.geometry import T_from_xy_yaw
 from bench.beliefs import meant
-from bench.detectors.data import data_folder, homes_in
 from bench.home_things import pairs
 from bench.homes import in_world
-from bench.inference.rebuilt import mapped, rebuilt
+from bench.inference.home_maps import add_arguments, home_maps
+from bench.inference.rebuilt import rebuilt
 
 ALONE, ROOM, MAP = "by itself", "with its room", "as the map states it"
+__all__ = ["add_arguments", "run", "table"]
+
 BINS = np.linspace(0.0, 1.0, 6)
 """Edges of the bins of the first guess's probability: a few dozen things fill no more than five."""
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Where the homes are, and which maps of them there are already."""
-    parser.add_argument("--homes", type=Path, default=data_folder() / "homes")
-    parser.add_argument("--map", type=Path, action="append", default=[], help="map of a --home")
-    parser.add_argument("--home", type=Path, action="append", default=[])
-    parser.add_argument("--stride", type=int, default=1, help="map every N-th view")
 
 
 def run(args: argparse.Namespace) -> dict[str, Any]:
     """How many are right, by who tells; what is taken for what; how sure first guesses are."""
     host = PluginHost()
-    if len(args.map) != len(args.home):
-        raise SystemExit("error: name one --home for each --map")
     rows: list[dict[str, Any]] = []
-    if args.map:
-        for folder, at in zip(args.map, args.home, strict=True):
-            home = homes_in(at, host)[0]
-            rows += judged(rebuilt(folder, host), home.truth, home.name, host)
-    else:
-        for home in homes_in(args.homes, host):
-            found = mapped(home.folder / "bag", host, args.stride)
-            rows += judged(found, home.truth, home.name, host)
+    for folder, home in home_maps(args, host):
+        rows += judged(rebuilt(folder, host), home.truth, home.name, host)
     return {"things": rows, "summary": summary(rows), "taken_for": taken_for(rows)}
 
 
