@@ -11,17 +11,14 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
 from afkb.errors import EvidenceError
 from afkb.inference.bands import Array
 from afkb.inference.causes import Cause, causes_of
-from afkb.inference.holdings import Holdings, Stated
-
-NUMBER_STARTS = (1, 2, 3, 5, 9)
-"""First number of each bin of how many things of a category are found, where any is."""
+from afkb.inference.holdings import Holdings, Stated, found_by_room
+from afkb.inference.numbers import NUMBER_STARTS, number_table
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,35 +219,6 @@ class ContentsNetwork:
         bins = np.searchsorted(NUMBER_STARTS, x[held], side="right") - 1
         table = number_table(self.number[held])
         return np.asarray(np.log(table[bins, np.arange(len(held))]))
-
-
-def number_table(mean: Array) -> Array:
-    """(bins, C, R) probability of each bin of numbers, where there is any: geometric, mean (C, R).
-
-    A hundredth is spread evenly: nobody has counted that far.
-    """
-    go_on = 1.0 - 1.0 / mean
-    beyond = [go_on ** (start - 1) for start in NUMBER_STARTS] + [np.zeros_like(mean)]
-    shares = np.array([here - after for here, after in pairwise(beyond)])
-    return np.asarray(0.99 * shares + 0.01 / len(NUMBER_STARTS))
-
-
-def found_by_room(probability: Array, shares: tuple[float, ...]) -> Array:
-    """(C, R) hazards, whole room seen, so that rooms of all shares together hold what is stated.
-
-    P(found | share s) = 1 - exp(-s hazard): each thing is found with probability s, and there are
-    Poisson many. Solved by Newton steps in the logarithm; what is stated is their mean.
-    """
-    target = -np.log1p(-probability)
-    hazard = target / np.mean(shares)
-    s = np.array(shares)
-    for _ in range(30):
-        none = np.exp(-hazard[..., None] * s)
-        mean = 1.0 - none.mean(axis=-1)
-        slope = (none * s).mean(axis=-1)
-        # Newton in the hazard, kept positive.
-        hazard = np.maximum(hazard + (probability - mean) / slope, hazard / 4.0)
-    return np.asarray(hazard)
 
 
 def _log_found(total: Array) -> Array:

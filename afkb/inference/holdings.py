@@ -119,6 +119,24 @@ def _fill(p: Array, mean: Array, stated: Stated, trials: Array, weights: Array) 
     mean[missing] = np.maximum(p, np.where(named[:, None], p, anywhere[:, None]))[missing]
 
 
+def found_by_room(probability: Array, shares: tuple[float, ...]) -> Array:
+    """(C, R) hazards, whole room seen, so that rooms of all shares together hold what is stated.
+
+    P(found | share s) = 1 - exp(-s hazard): each thing is found with probability s, and there are
+    Poisson many. Solved by Newton steps in the logarithm; what is stated is their mean.
+    """
+    target = -np.log1p(-probability)
+    hazard = target / np.mean(shares)
+    s = np.array(shares)
+    for _ in range(30):
+        none = np.exp(-hazard[..., None] * s)
+        mean = 1.0 - none.mean(axis=-1)
+        slope = (none * s).mean(axis=-1)
+        # Newton in the hazard, kept positive.
+        hazard = np.maximum(hazard + (probability - mean) / slope, hazard / 4.0)
+    return np.asarray(hazard)
+
+
 def kinds_together(holdings: Holdings, kinds: Iterable[str]) -> Holdings:
     """The same of kinds of things: `kinds` (C,) names what each category is, of all it can be."""
     of = list(kinds)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from afkb.inference.bands import Array
-from afkb.inference.contents import NUMBER_STARTS, ContentsNetwork, number_table
+from afkb.inference.contents import ContentsNetwork
+from afkb.inference.numbers import NUMBER_STARTS, number_table
 from afkb.inference.objects import ObjectNetwork
 from afkb.inference.relations import RelationshipNetwork
 from afkb.inference.rooms import COUNT_BINS, RoomNetwork

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 from afkb.errors import EvidenceError
 from afkb.inference import Network, network_of
-from afkb.inference.contents import NUMBER_STARTS, ContentsNetwork
+from afkb.inference.contents import ContentsNetwork
 from afkb.inference.holdings import Holdings, Stated, kinds_together
 from afkb.inference.kinds import Kinds
+from afkb.inference.numbers import NUMBER_STARTS
 from afkb.inference.pgm import NUMBER_STATES, ROOM, SHARE, band_states, contents_model
 from afkb.inference.rooms import RoomNetwork
 from afkb.knowledge import AfNet, ObjectInRoom, ObjectWithObject
