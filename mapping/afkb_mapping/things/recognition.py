@@ -10,8 +10,8 @@ from shapely.geometry import Polygon
 
 from afkb.flow import Change, ChangeKind, Entity, NodeKind
 from afkb.inference import Network
-from afkb.inference.existence import after
 from afkb.inference.recognition import CountsOf, is_floor, standing_together
+from afkb.inference.update_rules import against
 from afkb_mapping.things.entities import EXISTS_FROM, SUSTAINED
 
 BOARDS_APART_M = 0.10
@@ -69,11 +69,25 @@ def _named(entities: Sequence[Entity], counts_of: CountsOf, network: Network) ->
 
 
 def _surrounded(entity: Entity, ratio: float) -> Entity:
-    """Its existence by its surroundings, too: both ways, table and book (paper §II.C)."""
-    before = entity.existence
-    now = after(ChangeKind.SURROUNDED, ratio, before)
-    step = Change(ChangeKind.SURROUNDED, ratio, before, now, entity.last_seen)
+    """Its existence by its surroundings, too: both ways, table and book (paper §II.C).
+
+    They tell whether it was there when it was seen. What time has left of that they leave.
+    """
+    before, left = entity.existence, _left_by_time(entity)
+    now = against(before / left, ratio) * left
+    weighed = ratio if left == 1.0 else now * (1.0 - before) / (before * (1.0 - now))
+    step = Change(ChangeKind.SURROUNDED, weighed, before, now, entity.last_seen)
     return replace(entity, existence=now, history=(*entity.history, step))
+
+
+def _left_by_time(entity: Entity) -> float:
+    """Share that time has left of its existence since anything else told of it."""
+    left = 1.0
+    for change in reversed(entity.history):
+        if change.kind is not ChangeKind.AGED:
+            break
+        left *= change.evidence
+    return left
 
 
 def _still_there(entities: Sequence[Entity], doubtful: Collection[str]) -> list[Entity]:
