@@ -27,7 +27,7 @@ SIZE_AND_PLACE = ("dimensions", "clearance", "proximity", "orientation")
 class Network:
     """Posteriors over what things are, what else is there, and what rooms are for.
 
-    Exact: closed forms of the networks that `afkb.inference.pgm` writes out for pgmpy, whose variable
+    Exact: closed forms of the networks that `afkb.inference.pgm` writes out for pgmpy; its variable
     elimination is the tests' oracle. Those of what rooms hold and of what stands together are
     compiled when they are first asked.
     """
