@@ -93,16 +93,15 @@ class ContentsNetwork:
         `found`; need not sum to 1.
         """
         x = self.seen(found)
-        held = np.flatnonzero(x)
-        inner = self.among([self.categories[i] for i in held])
-        joint = _log(weights) + inner._log_terms(x[held]).sum(axis=0)
-        rooms = _normal(joint).sum(axis=1)
-        present = (x > 0).astype(np.float64)
-        total = self._room_beside(present) + self.caused(present)[:, None, None]
-        logs = joint + _log_found(total) + self._if_source(x, inner, found=True)
-        none = joint - total + self._if_source(x, inner, found=False)
-        asked = _share_of_first(logs, none)
-        more = np.where(x > 0, (1.0 - 1.0 / self.number) @ rooms, asked)
+        held, present = np.flatnonzero(x), (x > 0).astype(np.float64)
+        rooms, caused = self._room_beside(present), self.caused(present)[:, None, None]
+        total = rooms + caused
+        known = _log_found(total[held]) + self._log_number(x, held)[:, :, None]
+        joint = _log(weights) + known.sum(axis=0)
+        if_found, if_not = self._as_source(present, rooms, caused)
+        asked = _share_of_first(joint + _log_found(total) + if_found, joint - total + if_not)
+        one_more = (1.0 - 1.0 / self.number) @ _normal(joint).sum(axis=1)
+        more = np.where(x > 0, one_more, asked)
         return dict(zip(self.categories, more.tolist(), strict=True))
 
     def each_hidden(self, found: Mapping[str, int], weights: Array) -> dict[str, float]:
@@ -167,19 +166,21 @@ class ContentsNetwork:
         rooms = (np.exp(left)[:, None] * self.hazard)[:, :, None]
         return np.asarray(rooms * np.array(self.shares))
 
-    def _if_source(self, x: Array, inner: ContentsNetwork, found: bool) -> Array:
-        """(C, R, S) log factor of what is found, with each unobserved category found, or not."""
-        factor = np.zeros((len(x), len(self.rooms), len(self.shares)))
-        held = np.flatnonzero(x)
-        row = {int(i): k for k, i in enumerate(held)}
-        caused = inner.caused(np.ones(len(held)))
-        for cause in self.causes:
-            if cause.effect in row and not x[cause.source]:
-                k = row[cause.effect]
-                rooms, others = inner.by_room[k], caused[k]
-                here = np.exp(cause.log_left) * rooms + others + found * cause.hazard
-                factor[cause.source] += _log_found(here) - _log_found(rooms + others)
-        return factor
+    def _as_source(self, present: Array, rooms: Array, caused: Array) -> tuple[Array, Array]:
+        """Log factors (C, R, S) of what is found, were each unobserved category found, and not.
+
+        `rooms`, `caused`: hazards (C, R, S) by the room and by what is `present` (C,), of each.
+        """
+        if_found, if_not = np.zeros_like(rooms), np.zeros_like(rooms)
+        tells = (present[self._effect] > 0) & (present[self._source] == 0)
+        source, effect = self._source[tells], self._effect[tells]
+        others, left = caused[effect], np.exp(self._log_left[tells])[:, None, None]
+        without = left * rooms[effect] + others
+        known = _log_found(rooms[effect] + others)
+        by_it = self.strength[tells][:, None, None]
+        np.add.at(if_found, source, _log_found(without + by_it) - known)
+        np.add.at(if_not, source, _log_found(without) - known)
+        return if_found, if_not
 
     def _log_terms(self, x: Array) -> Array:
         """(C, R, S) log-probability of each category's state, given its causes' states."""

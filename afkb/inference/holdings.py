@@ -123,7 +123,7 @@ def found_by_room(probability: Array, shares: tuple[float, ...]) -> Array:
     """(C, R) hazards, whole room seen, so that rooms of all shares together hold what is stated.
 
     P(found | share s) = 1 - exp(-s hazard): each thing is found with probability s, and there are
-    Poisson many. Solved by Newton steps in the logarithm; what is stated is their mean.
+    Poisson many. What is stated is the mean over shares; solved by Newton steps.
     """
     target = -np.log1p(-probability)
     hazard = target / np.mean(shares)

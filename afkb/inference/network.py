@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from afkb.errors import EvidenceError
-from afkb.inference.bands import Array
 from afkb.inference.contents import ContentsNetwork
 from afkb.inference.holdings import Stated
 from afkb.inference.joint import JointNetwork
@@ -163,7 +162,8 @@ class Network:
         if categories is None:
             return self.rooms.posterior(counts)
         joint = self.rooms.likelihood(counts) * self.rooms.joint_prior
-        weights = (joint * self._found(categories)).sum(axis=1)
+        found = self.contents_network.among(categories).likelihood(categories)
+        weights = (joint * found).sum(axis=1)
         total = float(weights.sum())
         if not total > 0:
             raise EvidenceError(f"no room can hold {dict(counts)} with {dict(categories)}")
@@ -192,17 +192,6 @@ class Network:
     def contents_network(self) -> ContentsNetwork:
         """What rooms hold, by the figures and co-occurrences that the ontology states."""
         return ContentsNetwork.compile(Stated.of(self.knowledge_base))
-
-    def _found(self, categories: Mapping[str, int]) -> Array:
-        """(R, S) likelihood, in the network of those categories that were looked for."""
-        among = frozenset(categories)
-        if among not in self._contents_among:
-            self._contents_among[among] = self.contents_network.among(among)
-        return self._contents_among[among].likelihood(categories)
-
-    @cached_property
-    def _contents_among(self) -> dict[frozenset[str], ContentsNetwork]:
-        return {}
 
     def write_bif(self, path: Path) -> None:
         """Write the networks, as one without edges between them, in BIF."""
