@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from string import Template
 
 from afkb import __version__
-from afkb.flow import NodeKind, TopologicalMap
+from afkb.drawing import drawing_of, inline_script, inline_style, part
+from afkb.flow import TopologicalMap
 from afkb_report import tables
-from afkb_report.plan import plan
 
 REPORT = "report.html"
 _PARTS = Path(__file__).parent
@@ -36,14 +37,16 @@ class ReportExporter:
 
 
 def page(topological_map: TopologicalMap, run: Mapping[str, object]) -> str:
-    """The page's HTML: plan, legend, and tables of counts, rooms, things, closures, timings."""
+    """The page's HTML: plan, evidence, and tables of counts, rooms, things, closures, timings."""
+    drawing = drawing_of(topological_map)
     template = Template((_PARTS / "page.html").read_text(encoding="utf-8"))
     return template.substitute(
         version=escape(__version__),
-        style=(_PARTS / "style.css").read_text(encoding="utf-8"),
-        script=(_PARTS / "page.js").read_text(encoding="utf-8"),
-        summary=escape(_summary(topological_map)),
-        plan=plan(topological_map),
+        style=inline_style(),
+        script=inline_script("report.js"),
+        summary=escape(drawing.summary),
+        board=Template(part("board.html")).substitute(plan=drawing.svg),
+        drawing=_in_script(drawing.as_json()),
         counts=tables.counts(topological_map),
         rooms=tables.rooms(topological_map),
         things=tables.things(topological_map),
@@ -53,17 +56,7 @@ def page(topological_map: TopologicalMap, run: Mapping[str, object]) -> str:
     )
 
 
-def _summary(m: TopologicalMap) -> str:
-    seen = sum(e.kind is NodeKind.OBSERVED for e in m.entities)
-    counted = (
-        (len(m.rooms), "room"),
-        (len(m.places), "robot place"),
-        (seen, "thing seen"),
-        (len(m.entities) - seen, "thing predicted"),
-        (len(m.closures), "loop closure"),
-    )
-    return " · ".join(f"{n} {_plural(what) if n != 1 else what}" for n, what in counted)
-
-
-def _plural(what: str) -> str:
-    return what.replace("thing", "things") if "thing" in what else f"{what}s"
+def _in_script(data: Mapping[str, object]) -> str:
+    """JSON that can't end the script element that it stands in, whatever names it has."""
+    text = json.dumps(data, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
+from urllib.parse import quote
 
+from afkb.drawing.words import affords, best, role
 from afkb.flow import Entity, NodeKind, Room, TopologicalMap
-from afkb_report.words import affords, best, role
 
 _KINDS = {
     NodeKind.OBSERVED: "seen",
@@ -15,12 +16,22 @@ _KINDS = {
 }
 
 
-def table(columns: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") -> str:
-    """An HTML table of ready-made cells (HTML text), or a dash where there are no rows."""
-    body = "\n".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
+def table(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    kind: str = "",
+    ids: Sequence[str] | None = None,
+) -> str:
+    """An HTML table of ready-made cells (HTML text), or a dash where there are no rows.
+
+    `ids`: of the nodes that the rows are about.
+    """
+    starts = [f'<tr data-id="{escape(id_)}">' for id_ in ids or ()] or ["<tr>"] * len(rows)
+    cells = ("".join(f"<td>{cell}</td>" for cell in row) for row in rows)
+    body = "\n".join(f"{start}{row}</tr>" for start, row in zip(starts, cells, strict=True))
     if not body:
         return '<p class="none">none</p>'
-    head = "".join(f"<th>{escape(column)}</th>" for column in columns)
+    head = "".join(f'<th scope="col">{escape(column)}</th>' for column in columns)
     return (
         f'<div class="scroll"><table class="{kind}"><thead><tr>{head}</tr></thead>\n'
         f"<tbody>{body}</tbody></table></div>"
@@ -78,9 +89,9 @@ def _bars(belief: Mapping[str, float], count: int = 4) -> str:
 
 
 def things(m: TopologicalMap) -> str:
-    """Everything seen or predicted, with where it is and what it may be."""
+    """Everything seen or predicted, with where it is and what it may be; an id shows its node."""
     columns = ["id", "how", "affords", "may be", "exists", "x", "y", "height", "on", "room"]
-    return table(columns, [_row(entity) for entity in m.entities], "things")
+    return table(columns, [_row(e) for e in m.entities], "things", [e.id for e in m.entities])
 
 
 def _row(entity: Entity) -> tuple[str, ...]:
@@ -88,7 +99,7 @@ def _row(entity: Entity) -> tuple[str, ...]:
     mark = f'<i class="mark {role(entity)} {_mark(entity)}"></i>'
     moves = " dynamic" if entity.movability == "Dynamic" else ""
     return (
-        mark + escape(entity.id),
+        f'{mark}<a href="#{quote(entity.id)}">{escape(entity.id)}</a>',
         escape(_KINDS[entity.kind] + moves),
         escape(", ".join(affords(entity)[:3])),
         escape(", ".join(f"{name} {p:.2f}" for name, p in best(entity.category_belief, 2))),

@@ -77,6 +77,7 @@ def test_the_wheel_holds_what_is_needed_and_no_more(wheel: Path) -> None:
         "afkb/py.typed",
         "afkb/testing/__init__.py",
         "afkb_simulation/worlds/paper_home.world.yaml",
+        "afkb/drawing/assets/board.html",
         "afkb_report/page.html",
         "afkb_things/calibration.csv",
     ):

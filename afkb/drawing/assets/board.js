@@ -1,0 +1,66 @@
+// The plan on a page: which element stands for which node, what is chosen, what is lit up.
+
+const MARKS = ".node, .place, .room, .doorway, .bound";
+
+export class Board extends EventTarget {
+  // section: the page's .map with the SVG in it; drawing: { nodes, time } of the map.
+  constructor(section, drawing) {
+    super();
+    this.section = section;
+    this.svg = section.querySelector(".plan");
+    this.nodes = drawing.nodes;
+    this.times = drawing.time;
+    this.chosen = null;
+    this.elements = new Map();
+    for (const drawn of this.svg.querySelectorAll("[data-id]")) {
+      const id = drawn.dataset.id;
+      this.elements.set(id, [...(this.elements.get(id) || []), drawn]);
+    }
+  }
+
+  // The element of a node that takes the keyboard's focus: the last mark that is drawn of it.
+  mark(id) {
+    return (this.elements.get(id) || []).findLast((drawn) => drawn.matches(MARKS));
+  }
+
+  nodeAt(target) {
+    const drawn = target.closest?.("[data-id]");
+    return drawn && this.nodes[drawn.dataset.id] ? drawn.dataset.id : null;
+  }
+
+  // How a node is told in a few words: what it is, how sure, whether it was seen.
+  told(id) {
+    const { kind, belief = {}, existence, state, was } = this.nodes[id];
+    const [likeliest] = Object.entries(belief);
+    const name = likeliest ? `${likeliest[0]} ${likeliest[1].toFixed(2)}` : "";
+    const how = { ObservedEntity: "seen", DualPrediction: "predicted by duality",
+      CoOccurrencePrediction: "predicted by co-occurrence", RobotPlace: "robot place",
+      PastPrediction: `was predicted, ${(state || "").toLowerCase()}` }[kind] || kind.toLowerCase();
+    const sure = existence == null || was ? "" : `exists ${existence.toFixed(2)}`;
+    return [name, how, sure].filter(Boolean).join(", ");
+  }
+
+  choose(id, by = "") {
+    for (const drawn of this.elements.get(this.chosen) || []) drawn.classList.remove("chosen");
+    this.chosen = id && this.nodes[id] ? id : null;
+    for (const drawn of this.elements.get(this.chosen) || []) drawn.classList.add("chosen");
+    this.dispatchEvent(new CustomEvent("choose", { detail: { id: this.chosen, by } }));
+    this.say(this.chosen ? `${this.chosen}: ${this.told(this.chosen)}` : "");
+  }
+
+  // Lights nodes up and dims the rest; none: everything as usual.
+  light(ids) {
+    for (const drawn of this.svg.querySelectorAll(".lit")) drawn.classList.remove("lit");
+    const known = [...new Set(ids)].filter((id) => this.elements.has(id));
+    for (const id of known) {
+      for (const drawn of this.elements.get(id)) drawn.classList.add("lit");
+    }
+    this.svg.classList.toggle("dimmed", known.length > 0);
+    return known.length;
+  }
+
+  // Told to who hears the page.
+  say(words) {
+    this.section.querySelector(".spoken").textContent = words;
+  }
+}

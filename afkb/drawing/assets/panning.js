@@ -1,0 +1,128 @@
+// Pans and zooms the plan: mouse, touch, keyboard and buttons.
+
+const LEAST_WIDTH = 30;
+const MOST_TIMES_WHOLE = 4;
+const CLICK_WITHIN_PX = 4;
+const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+export class Panning {
+  // wheel: "always" zooms by the wheel, "ctrl" leaves the plain wheel to the page.
+  constructor(board, wheel) {
+    this.svg = board.svg;
+    this.whole = this.svg.getAttribute("viewBox").split(" ").map(Number);
+    this.view = [...this.whole];
+    this.fingers = new Map();
+    this.svg.setAttribute("tabindex", "0");
+    this.svg.classList.add(wheel === "always" ? "takes-touch" : "leaves-touch");
+    this.svg.addEventListener("wheel", (event) => this.#turned(event, wheel), { passive: false });
+    this.svg.addEventListener("dblclick", (event) => {
+      if (!board.nodeAt(event.target)) this.showWhole();
+    });
+    for (const [name, does] of [["pointerdown", "down"], ["pointermove", "move"],
+      ["pointerup", "up"], ["pointercancel", "up"]]) {
+      this.svg.addEventListener(name, (event) => this[does](event));
+    }
+    this.svg.addEventListener("keydown", (event) => this.#pressed(event));
+    const buttons = board.section.querySelector(".zoom");
+    buttons.hidden = false;
+    buttons.addEventListener("click", (event) => {
+      const wanted = event.target.closest("button")?.dataset.zoom;
+      if (wanted) this.#act({ in: "+", out: "-", whole: "0" }[wanted]);
+    });
+  }
+
+  show(view) {
+    this.view = view;
+    this.svg.setAttribute("viewBox", view.map((v) => Math.round(v * 100) / 100).join(" "));
+    // Marks and names grow more slowly than the plan, so that what stands close comes apart.
+    this.svg.style.setProperty("--mark", Math.min(1, view[2] / this.whole[2]) ** 0.6);
+    this.svg.classList.toggle("zoomed", view[2] < this.whole[2]);
+  }
+
+  showWhole() {
+    this.show([...this.whole]);
+  }
+
+  zoom(by, at = null) {
+    const [x, y, width, height] = this.view;
+    const most = MOST_TIMES_WHOLE * this.whole[2];
+    const times = Math.min(most, Math.max(LEAST_WIDTH, width * by)) / width;
+    const [cx, cy] = at || [x + width / 2, y + height / 2];
+    this.show([cx - (cx - x) * times, cy - (cy - y) * times, width * times, height * times]);
+  }
+
+  pan(dx, dy) {
+    const [x, y, width, height] = this.view;
+    this.show([x + dx, y + dy, width, height]);
+  }
+
+  // Moves the plan just so far that a point of the drawing is well inside.
+  reveal(px, py) {
+    const [x, y, width, height] = this.view;
+    const inside = (v, low, size) => v > low + 0.08 * size && v < low + 0.92 * size;
+    if (inside(px, x, width) && inside(py, y, height)) return;
+    this.show([px - width / 2, py - height / 2, width, height]);
+  }
+
+  inPlan(clientX, clientY) {
+    const at = new DOMPoint(clientX, clientY).matrixTransform(this.svg.getScreenCTM().inverse());
+    return [at.x, at.y];
+  }
+
+  #turned(event, wheel) {
+    if (wheel !== "always" && !event.ctrlKey && !event.altKey) return;
+    event.preventDefault();
+    const lines = event.deltaMode === 1 ? 16 : 1;
+    this.zoom(Math.exp((event.deltaY * lines) / 400), this.inPlan(event.clientX, event.clientY));
+  }
+
+  down(event) {
+    if (event.pointerType === "mouse" && event.button !== 0) return;
+    this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
+    this.start = [event.clientX, event.clientY];
+  }
+
+  move(event) {
+    const before = this.fingers.get(event.pointerId);
+    if (!before) return;
+    const far = Math.hypot(event.clientX - this.start[0], event.clientY - this.start[1]);
+    if (far < CLICK_WITHIN_PX && this.fingers.size === 1) return;
+    this.svg.setPointerCapture(event.pointerId);
+    const others = [...this.fingers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
+    const perPixel = 1 / this.svg.getScreenCTM().a;
+    const now = [event.clientX, event.clientY];
+    const share = 1 / this.fingers.size;
+    this.pan((before[0] - now[0]) * perPixel * share, (before[1] - now[1]) * perPixel * share);
+    if (others.length) {
+      const apart = (at) => Math.max(1, Math.hypot(at[0] - others[0][0], at[1] - others[0][1]));
+      const middle = [(now[0] + others[0][0]) / 2, (now[1] + others[0][1]) / 2];
+      this.zoom(apart(before) / apart(now), this.inPlan(...middle));
+    }
+    this.fingers.set(event.pointerId, now);
+  }
+
+  up(event) {
+    this.fingers.delete(event.pointerId);
+  }
+
+  #pressed(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const onPlan = event.target === this.svg;
+    if (KEYS[event.key] ? onPlan && this.#step(...KEYS[event.key]) : this.#act(event.key)) {
+      event.preventDefault();
+    }
+  }
+
+  #step(right, down) {
+    this.pan(0.1 * right * this.view[2], 0.1 * down * this.view[3]);
+    return true;
+  }
+
+  #act(key) {
+    if (key === "+" || key === "=") this.zoom(1 / 1.3);
+    else if (key === "-") this.zoom(1.3);
+    else if (key === "0") this.showWhole();
+    else return false;
+    return true;
+  }
+}

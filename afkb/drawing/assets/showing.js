@@ -1,0 +1,29 @@
+// Puts the parts of the plan together, for whichever page it stands on.
+
+import { Board } from "./board.js";
+import { letChoose } from "./choosing.js";
+import { showDetails } from "./details.js";
+import { drawLinks } from "./links.js";
+import { letTimePass } from "./moments.js";
+import { Panning } from "./panning.js";
+import { letSearch } from "./searching.js";
+
+export function showPlan(section, drawing, { wheel, more = null }) {
+  const board = new Board(section, drawing);
+  const panning = new Panning(board, wheel);
+  const { back } = letChoose(board, panning);
+  showDetails(board, { more, back });
+  drawLinks(board);
+  letSearch(board);
+  letTimePass(board);
+  const named = () => decodeURIComponent(location.hash.slice(1));
+  addEventListener("hashchange", () => board.choose(named(), "list"));
+  board.addEventListener("choose", ({ detail: { id } }) => {
+    const hash = id ? `#${encodeURIComponent(id)}` : location.pathname + location.search;
+    try {
+      history.replaceState(null, "", hash);
+    } catch { /* A page from disk may not rename itself. */ }
+  });
+  if (drawing.nodes[named()]) board.choose(named(), "link");
+  return { board, panning };
+}
