@@ -38,3 +38,7 @@ class QueryError(AfkbError):
 
 class RouteError(AfkbError):
     """A route that isn't there, or whose ends name nothing in the map."""
+
+
+class EndpointError(AfkbError):
+    """A SPARQL server that can't be reached, or that refuses what it is asked."""

@@ -1,0 +1,21 @@
+"""Maps of many robots in one SPARQL 1.1 server: a named graph each, whole or not there.
+
+>>> from afkb.fleet import push
+"""
+
+from afkb.fleet.catalogue import KeptMap, kept_maps, map_graph, remove
+from afkb.fleet.names import named
+from afkb.fleet.pushing import Pushed, PushState, push
+from afkb.fleet.server import Server
+
+__all__ = [
+    "KeptMap",
+    "PushState",
+    "Pushed",
+    "Server",
+    "kept_maps",
+    "map_graph",
+    "named",
+    "push",
+    "remove",
+]

@@ -1,0 +1,258 @@
+"""Maps in a SPARQL server: a real Oxigraph process, killed at the worst moments."""
+
+import threading
+from dataclasses import replace
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+
+import pytest
+from typer.testing import CliRunner
+
+from afkb.errors import EndpointError, MapError
+from afkb.fleet import PushState, Server, kept_maps, map_graph, named, push, remove
+from afkb.fleet.pushing import ATTEMPTS
+from afkb.fleet.statements import digest_of, portions, statements_of
+from afkb.store import load, write_map
+from afkb.store.http import Address
+from oxigraph_server import OxigraphServer, oxigraph_server
+from store_samples import Names, sample_map
+
+
+@pytest.fixture(scope="module")
+def maps(tmp_path_factory):
+    """The same home on two days, as map folders."""
+    folder = tmp_path_factory.mktemp("maps")
+    later = replace(sample_map(), notes=("a later day",), closures=())
+    before = load(write_map(folder / "kitchen", sample_map(), {}, [], Names()))
+    return before, load(write_map(folder / "later", later, {}, [], Names()))
+
+
+@pytest.fixture(scope="module")
+def oxigraph(tmp_path_factory):
+    with oxigraph_server(tmp_path_factory.mktemp("oxigraph")) as server:
+        yield server
+
+
+@pytest.fixture
+def server(oxigraph: OxigraphServer):
+    found = Server.find(oxigraph.url, patience_s=20)
+    yield found
+    for kept in kept_maps(found):
+        remove(found, kept.name)
+    assert graphs(found) == []
+
+
+def graphs(server: Server) -> list[str]:
+    rows = server.ask("SELECT DISTINCT ?g WHERE { GRAPH ?g { ?s ?p ?o } } ORDER BY ?g")
+    return [row["g"] for row in rows]
+
+
+def kept(server: Server, name: str) -> str:
+    return digest_of(server.triples(map_graph(name)))
+
+
+def digest(stored) -> str:
+    return digest_of(statements_of(stored))
+
+
+def test_a_map_is_kept_as_it_is_and_sent_once(server, maps):
+    assert push(server, maps[0], "kitchen").state is PushState.STORED
+    assert kept(server, "kitchen") == digest(maps[0])
+    assert push(server, maps[0], "kitchen").state is PushState.ALREADY_THERE
+    listed = kept_maps(server)
+    assert [(k.name, k.triples) for k in listed] == [("kitchen", len(statements_of(maps[0])))]
+
+
+def test_a_later_map_takes_its_place_and_others_stay(server, maps):
+    push(server, maps[0], "north/kitchen")
+    push(server, maps[0], "kitchen")
+    push(server, maps[1], "kitchen")
+    assert kept(server, "kitchen") == digest(maps[1])
+    assert kept(server, "north/kitchen") == digest(maps[0])
+    assert graphs(server) == [
+        "urn:afkb:map:kitchen", "urn:afkb:map:north/kitchen", "urn:afkb:maps"
+    ]  # fmt: skip
+
+
+class LosingAnswers(Server):
+    """Every update is done, and every other answer is lost: so each is sent twice."""
+
+    def update(self, sparql: str) -> None:
+        super().update(sparql)
+        super().update(sparql)
+
+
+def test_updates_done_twice_double_nothing_and_lose_nothing(server, maps):
+    twice = LosingAnswers(server.query_at, server.update_at)
+    push(twice, maps[0], "kitchen")
+    push(twice, maps[1], "kitchen")
+    assert kept(server, "kitchen") == digest(maps[1])
+
+
+class Dying(Server):
+    """Stops before its n-th update, as a killed program does."""
+
+    def __init__(self, server: Server, updates: int) -> None:
+        super().__init__(server.query_at, server.update_at)
+        object.__setattr__(self, "left", [updates])
+
+    def update(self, sparql: str) -> None:
+        if not self.left[0]:  # type: ignore[attr-defined]
+            raise KeyboardInterrupt
+        self.left[0] -= 1  # type: ignore[attr-defined]
+        super().update(sparql)
+
+
+def test_wherever_a_program_dies_the_map_is_the_old_or_the_new_and_it_goes_on(
+    server, maps, monkeypatch
+):
+    monkeypatch.setattr(portions, "__defaults__", (4000,))
+    push(server, maps[0], "kitchen")
+    old, new = digest(maps[0]), digest(maps[1])
+    seen = []
+    for updates in range(100):
+        try:
+            push(Dying(server, updates), maps[1], "kitchen")
+        except KeyboardInterrupt:
+            seen.append(kept(server, "kitchen"))
+            continue
+        break
+    assert set(seen) <= {old, new} and seen[0] == old
+    assert kept(server, "kitchen") == new
+    assert graphs(server) == ["urn:afkb:map:kitchen", "urn:afkb:maps"]
+
+
+def test_a_server_that_dies_in_the_middle_and_comes_back_has_all_of_it(tmp_path, maps):
+    with oxigraph_server(tmp_path / "data") as process:
+        server = Server.find(process.url, patience_s=30)
+        push(server, maps[0], "kitchen")
+        update, died = Server.update, []
+
+        def dies_once(self: Server, sparql: str) -> None:
+            if "DROP SILENT" in sparql and not died:
+                died.append(True)
+                process.kill()
+                threading.Timer(0.3, process.start).start()
+            update(self, sparql)
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(Server, "update", dies_once)
+            assert push(server, maps[1], "kitchen").state is PushState.STORED
+        assert died
+        assert kept(server, "kitchen") == digest(maps[1])
+
+
+def test_a_server_that_keeps_something_else_is_told_of(server, maps):
+    push(server, maps[0], "kitchen")
+    sent = []
+
+    class Forgetful(Server):
+        def update(self, sparql: str) -> None:
+            if "INSERT DATA" in sparql and ":staging:" in sparql and "isVersionOf" not in sparql:
+                sent.append(sparql)
+                return
+            super().update(sparql)
+
+    with pytest.raises(EndpointError, match=r"does not keep .* as it was sent"):
+        push(Forgetful(server.query_at, server.update_at), maps[1], "kitchen")
+    assert len(sent) == ATTEMPTS
+    assert kept(server, "kitchen") == digest(maps[0])
+
+
+@pytest.fixture
+def odd_server():
+    """A server that answers as its path says: `/404`, `/401`, `/301`, `/busy`, `/page`, …"""
+    busy = []
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_POST(self) -> None:
+            self.rfile.read(int(self.headers["Content-Length"]))
+            what = self.path.split("/")[1]
+            if what == "busy" and len(busy) < 2:
+                busy.append(self.headers.get("Authorization"))
+                self.send_response(503)
+                self.end_headers()
+                return
+            self.send_response(int(what) if what.isdigit() else 200)
+            self.send_header("Location", "http://other:secret@elsewhere/sparql?key=hidden")
+            self.end_headers()
+            text = "<html>what do you <b>want</b>?</html>" + 500 * "x"
+            self.wfile.write(b'{"boolean": true}' if what == "busy" else text.encode())
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    http = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    threading.Thread(target=http.serve_forever, args=(0.02,), daemon=True).start()
+    yield f"http://127.0.0.1:{http.server_port}", busy
+    http.shutdown()
+    http.server_close()
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("404", "answers no SPARQL query .*404 Not Found: what do you want"),
+        ("401", "401 Unauthorized.*name who asks by AFKB_STORE_USER"),
+        ("301", "it points to http://elsewhere/sparql: use that URL"),
+        ("page", "answers no SPARQL query"),
+    ],
+)
+def test_what_is_no_sparql_server_is_told_in_a_line(odd_server, path, told):
+    with pytest.raises(EndpointError, match=told) as error:
+        Server.find(f"{odd_server[0]}/{path}")
+    assert "secret" not in str(error.value) and "hidden" not in str(error.value)
+    assert len(str(error.value)) < 500
+
+
+def test_a_busy_server_is_asked_again_with_credentials_that_nothing_shows(odd_server):
+    url, asked = odd_server
+    told = []
+    found = Server.find(
+        url.replace("//", "//me:s%40crt@") + "/busy", patience_s=10, tell=told.append
+    )
+    assert asked[0] == "Basic bWU6c0BjcnQ="
+    assert "crt" not in repr(found) + str(told) and "bWU6" not in repr(found)
+
+
+def test_credentials_come_from_the_url_or_the_environment():
+    by_token = Address.read("https://h/sparql/", {"AFKB_STORE_TOKEN": "t0k"})
+    assert (by_token.url, by_token.authorization) == ("https://h/sparql", "Bearer t0k")
+    by_user = {"AFKB_STORE_USER": "me", "AFKB_STORE_PASSWORD": "pw"}
+    assert Address.read("http://h", by_user).authorization == "Basic bWU6cHc="
+    assert Address.read("http://h", by_user).shows_credentials
+    assert not Address.read("http://localhost", by_user).shows_credentials
+    assert Address.read("http://[::1]:80/x", {}) == Address("http://[::1]:80/x")
+
+
+@pytest.mark.parametrize("url", ["ftp://host", "my-map", "http://", "http://u:pw@h:port/"])
+def test_what_is_no_url_of_a_server_is_refused_without_repeating_it(url):
+    with pytest.raises(EndpointError) as error:
+        Address.read(url)
+    assert "pw" not in str(error.value)
+
+
+def test_two_maps_of_one_name_are_not_sent_over_each_other(tmp_path):
+    with pytest.raises(MapError, match="would both be kept as 'a'"):
+        named([tmp_path / "x" / "a", tmp_path / "y" / "a"])
+    assert list(named([tmp_path / "a"], prefix="north/")) == ["north/a"]
+    with pytest.raises(MapError, match="is for one map"):
+        named([tmp_path / "a", tmp_path / "b"], name="c")
+
+
+def test_the_commands_send_list_and_remove(server, oxigraph, maps):
+    from afkb.cli.app import build_cli
+    from afkb.plugins.host import PluginHost
+
+    cli = build_cli(PluginHost())
+
+    def run(*arguments: str) -> str:
+        done = CliRunner().invoke(cli, ["store", *arguments], env={"AFKB_STORE": oxigraph.url})
+        assert done.exit_code == 0, done.output
+        return done.stdout
+
+    folders = [str(stored.folder) for stored in maps]
+    assert "kitchen: stored" in run("push", *folders)
+    assert "later: already there" in run("push", folders[1])
+    assert "urn:afkb:map:later" in run("list")
+    assert "later: removed" in run("remove", "later")
+    assert [k.name for k in kept_maps(server)] == ["kitchen"]
