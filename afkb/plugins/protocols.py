@@ -19,6 +19,8 @@ class Source(Protocol):
 
     - `uri`: what it was opened from. `gravity_aligned`: whether z of its pose frame is up.
     - `len(source)`: number of frames, bad ones included.
+    - `notes`: optional; lines on how the recording was read that its user should know, such as a
+      camera that was guessed or lines that were left out. The map's `run.json` keeps them.
     """
 
     @property

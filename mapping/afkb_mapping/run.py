@@ -23,6 +23,8 @@ from afkb_mapping.loops.naming import with_loops
 from afkb_mapping.memory.storing import MEMORY_FILE, to_bytes
 from afkb_mapping.memory.visit import Visit
 from afkb_mapping.placing.placed_views import skipped
+from afkb_mapping.recordings.depth_units import DepthsSeen
+from afkb_mapping.recordings.notes import notes_of
 from afkb_mapping.rooms.opinions import with_opinions
 from afkb_mapping.run_record import Settings, Stages, run_record
 from afkb_mapping.selection import Selection
@@ -81,7 +83,7 @@ def make_map(
         if not way.used:
             raise SourceError(selection.nothing_usable(way.skipped))
         with stages.timed("finish"):
-            found = _finished(crew, beginning, way, host.room_classifiers())
+            found = _finished(crew, beginning, way, host.room_classifiers(), notes_of(source))
         run = run_record(
             settings,
             stages,
@@ -113,6 +115,7 @@ class _Way:
     visit: Visit
     used: int = 0
     with_depth: int = 0
+    depths: DepthsSeen = field(default_factory=DepthsSeen)
     skipped: list[SkippedFrame] = field(default_factory=list)
     begun: float = field(default_factory=time.perf_counter)
 
@@ -138,17 +141,23 @@ class _Way:
             return
         self.used += 1
         self.with_depth += view.depth_m is not None
+        self.depths.add(view)
 
 
 def _finished(
-    crew: Crew, beginning: Beginning, way: _Way, classifiers: Sequence[RoomClassifier]
+    crew: Crew,
+    beginning: Beginning,
+    way: _Way,
+    classifiers: Sequence[RoomClassifier],
+    told: Sequence[str],
 ) -> TopologicalMap:
     visit, placing = beginning.visit, beginning.placing
     found = _closed(crew, visit, crew.finish(visit.T_map_source))
     with crew.stages.timed("classify rooms"):
         found = with_opinions(found, classifiers)
     nothing = NO_DEPTH if not way.with_depth else None if found.entities else NOTHING_SEEN
-    notes = (n for n in (*visit.notes, *placing.notes, nothing) if n)
+    units = way.depths.note
+    notes = (n for n in (*told, units, *visit.notes, *placing.notes, nothing) if n)
     counts = {**found.counts, **placing.counts}
     return replace(found, notes=(*found.notes, *notes), counts=counts)
 

@@ -15,10 +15,11 @@ from rosbags.interfaces import Connection
 
 from afkb.errors import BadFrame, SourceError
 from afkb.flow import PinholeCamera
+from afkb_mapping.recordings.pose_track import Track
 from afkb_rosbag.options import BagOptions
 from afkb_rosbag.recording import decoded, header_of, messages, stamp_ns
 from afkb_rosbag.topics import TF_TYPES, Topics
-from afkb_rosbag.transforms import FrameTree, Track
+from afkb_rosbag.transforms import FrameTree
 
 
 class Moments:

@@ -15,13 +15,13 @@ from rosbags.interfaces import Connection
 from afkb.errors import BadFrame, SourceError
 from afkb.flow import LaserScan, SkippedFrame, View
 from afkb.plugins.options import read_options
+from afkb_mapping.recordings.pose_track import NS
 from afkb_rosbag.depth_message import depth_of
 from afkb_rosbag.frames import Frames, choose_frames
 from afkb_rosbag.index import Index, build_index
 from afkb_rosbag.options import BagOptions
 from afkb_rosbag.recording import decoded, header_of, messages, opened
 from afkb_rosbag.topics import Topics, choose_topics
-from afkb_rosbag.transforms import NS
 
 _NOWHERE = np.iinfo(np.int64).min
 

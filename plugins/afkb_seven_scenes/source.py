@@ -17,14 +17,13 @@ from pydantic import BaseModel, ConfigDict, PositiveFloat, field_validator
 from afkb.errors import BadFrame, SourceError
 from afkb.flow import PinholeCamera, SkippedFrame, View
 from afkb.plugins.options import read_options
-from afkb_mapping.depth_png import decode_png16, metres, png_size
 from afkb_mapping.optical import T_BODY_OPTICAL, T_OPTICAL_BODY
-from afkb_seven_scenes.intrinsics import find_intrinsics
+from afkb_mapping.recordings.images import common_size, read_color, read_depth
+from afkb_mapping.recordings.intrinsics import find_intrinsics
 
 # 7-Scenes has no stamps; its Kinect ran at 30 frames a second.
 _FRAMES_PER_SECOND = 30.0
 _FRAME = re.compile(r"frame-(\d+)\.(depth\.png|pose\.txt)$")
-_FRAMES_ASKED_FOR_SIZE = 25
 _LAYOUT = "frame-000000.depth.png, frame-000000.pose.txt … and camera-intrinsics.txt"
 
 
@@ -97,18 +96,6 @@ class SevenScenesSource:
         return None if path is None else read_color(path, size)
 
 
-def read_depth(path: Path, per_metre: float) -> NDArray[np.float32]:
-    """Depth (H, W) float32, m; `BadFrame` where the file is missing, damaged or not 16-bit."""
-    try:
-        return metres(decode_png16(path.read_bytes()), per_metre)
-    except FileNotFoundError as error:
-        raise BadFrame(f"no {path.name} for this pose") from error
-    except OSError as error:
-        raise BadFrame(f"{path.name}: {error.strerror}") from error
-    except BadFrame as error:
-        raise BadFrame(f"{path.name}: {error}") from error
-
-
 def read_pose(path: Path) -> NDArray[np.float64]:
     """Camera-to-world transform (4, 4), m; `BadFrame` where it is missing, lost (inf) or NaN."""
     try:
@@ -122,17 +109,6 @@ def read_pose(path: Path) -> NDArray[np.float64]:
     if not np.isfinite(T).all():
         raise BadFrame(f"{path.name}: pose is not finite (tracking was lost)")
     return T.reshape(4, 4)
-
-
-def read_color(path: Path, size: tuple[int, ...]) -> NDArray[np.uint8]:
-    """Colour (H, W, 3) uint8 RGB of the same size as depth, or `BadFrame`."""
-    import cv2
-
-    bgr = cv2.imdecode(np.frombuffer(path.read_bytes(), np.uint8), cv2.IMREAD_COLOR)
-    if bgr is None or bgr.shape[:2] != size:
-        got = "no image" if bgr is None else f"{bgr.shape[1]}x{bgr.shape[0]}"
-        raise BadFrame(f"{path.name}: {got}, registered colour has depth's {size[1]}x{size[0]}")
-    return np.asarray(cv2.cvtColor(bgr, cv2.COLOR_BGR2RGB), dtype=np.uint8)
 
 
 def recognises(folder: Path) -> bool:
@@ -174,16 +150,7 @@ def _nothing_in(folder: Path) -> str:
 
 
 def _common_size(folder: Path, names: list[str]) -> tuple[int, int]:
-    """(width, height) that most of the first readable depth images state in their headers."""
-    sizes = (size for name in names if (size := _stated_size(folder / f"{name}.depth.png")))
-    counts = Counter(islice(sizes, _FRAMES_ASKED_FOR_SIZE))
-    if not counts:
+    size = common_size(folder / f"{name}.depth.png" for name in names)
+    if size is None:
         raise SourceError(f"{folder}: none of its depth images is a PNG; expected {_LAYOUT}")
-    return counts.most_common(1)[0][0]
-
-
-def _stated_size(path: Path) -> tuple[int, int] | None:
-    if not path.is_file():
-        return None
-    with path.open("rb") as file:
-        return png_size(file.read(24))
+    return size

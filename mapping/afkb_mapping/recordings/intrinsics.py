@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -23,19 +22,20 @@ def find_intrinsics(
     Raises `SourceError` where there is none, or it holds no usable matrix.
     """
     if given is not None:
-        return _camera("option intrinsics", "give it as intrinsics=fx,fy,cx,cy", given, size)
-    path = next(_candidates(folder), None)
+        return camera_of("option intrinsics", "give it as intrinsics=fx,fy,cx,cy", given, size)
+    path = intrinsics_file(folder)
     if path is None:
         raise SourceError(
             f"{folder / _NAMES[0]}: no intrinsics; {_MEND}, "
             "or give the option intrinsics=fx,fy,cx,cy"
         )
-    return _camera(str(path), _MEND, _read(path), size)
+    return camera_of(str(path), _MEND, _read(path), size)
 
 
-def _candidates(folder: Path) -> Iterator[Path]:
+def intrinsics_file(folder: Path) -> Path | None:
+    """The text file that holds the matrix, in the folder or one up; None where there is none."""
     places = (folder, folder.resolve().parent)
-    return (p / name for p in places for name in _NAMES if (p / name).is_file())
+    return next((p / name for p in places for name in _NAMES if (p / name).is_file()), None)
 
 
 def _read(path: Path) -> tuple[float, float, float, float]:
@@ -52,9 +52,10 @@ def _read(path: Path) -> tuple[float, float, float, float]:
     return float(K[0, 0]), float(K[1, 1]), float(K[0, 2]), float(K[1, 2])
 
 
-def _camera(
+def camera_of(
     where: str, mend: str, values: tuple[float, float, float, float], size: tuple[int, int]
 ) -> PinholeCamera:
+    """The camera of these values (fx, fy, cx, cy); `SourceError` says where and the mend."""
     width, height = size
     fx, fy, cx, cy = values
     try:

@@ -1,0 +1,1 @@
+"""What readers of recordings share: image files, intrinsics files, poses over time."""
