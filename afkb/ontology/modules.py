@@ -127,9 +127,10 @@ def split(graph: Graph) -> dict[str, Graph]:
     The whole's own header is in none; each module has a header of its own.
     """
     homes = _Homes(graph)
-    parts = {module.name: Graph() for module in MODULES}
+    parts = {module.name: Graph("SimpleMemory") for module in MODULES}
+    whole = URIRef(ONTOLOGY_IRI)
     for subject, predicate, value in graph:
-        if subject != URIRef(ONTOLOGY_IRI):
+        if subject != whole:
             parts[homes.of_statement(subject, predicate, value)].add((subject, predicate, value))
     for module in MODULES:
         _add_module_header(parts[module.name], module)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from xml.sax.saxutils import escape, quoteattr
 
 from rdflib import BNode, Graph, Literal, URIRef
@@ -42,7 +43,7 @@ def _description(
 def _statement(
     graph: Graph, predicate: Node, value: Node, by_namespace: dict[str, str], indent: str
 ) -> list[str]:
-    namespace, local = split_uri(str(predicate))
+    namespace, local = _split(str(predicate))
     tag = f"{by_namespace[namespace]}:{local}"
     if isinstance(value, BNode):
         inner = _description(graph, value, by_namespace, indent + "  ")
@@ -50,6 +51,12 @@ def _statement(
     if isinstance(value, Literal):
         return [f"{indent}<{tag}{_literal_attribute(value)}>{escape(str(value))}</{tag}>"]
     return [f"{indent}<{tag} rdf:resource={quoteattr(str(value))}/>"]
+
+
+@cache
+def _split(predicate: str) -> tuple[str, str]:
+    namespace, local = split_uri(predicate)
+    return str(namespace), str(local)
 
 
 def _literal_attribute(value: Literal) -> str:

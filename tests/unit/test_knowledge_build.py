@@ -10,6 +10,7 @@ from afkb.knowledge import AFN, bundled_ontology
 from afkb.ontology.build import build_ontology, write_ontology
 from afkb.ontology.names import STATUSES
 from afkb.ontology.schema import property_of
+from afkb.quality.reading import read_graph
 
 TABLES = Path(__file__).parents[2] / "ontology" / "tables"
 STATUS = URIRef(AFN + "status")
@@ -19,7 +20,7 @@ pytestmark = pytest.mark.xdist_group("build")
 
 @pytest.fixture(scope="session")
 def graph() -> Graph:
-    return Graph().parse(bundled_ontology(), format="xml")
+    return read_graph(bundled_ontology())
 
 
 def named(graph: Graph) -> list[URIRef]:
