@@ -25,7 +25,9 @@ def read_graphs(files: Sequence[Path]) -> dict[Path, Graph]:
         from afkb.extensions import read_stack
 
         stacked = read_stack(files)
-    return {path: plain(stacked[path]) if path in stacked else read_graph(path) for path in files}
+    # The last first: a slip in an extension is told before the large ontology is read.
+    read = {p: plain(stacked[p]) if p in stacked else read_graph(p) for p in reversed(files)}
+    return {path: read[path] for path in files}
 
 
 def read_graph(path: Path) -> Graph:

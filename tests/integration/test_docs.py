@@ -23,7 +23,7 @@ from documents import Block, blocks, links
 from running import ROOT
 
 pytestmark = pytest.mark.xdist_group("integration")
-FRAMES = 25
+FRAMES = 10
 
 
 def needs_recordings(text: str) -> bool:
