@@ -1,4 +1,4 @@
-"""Options that a user gives a source, checked once, with one line that says what is wrong."""
+"""Options that a user gives a plugin, checked once, with one line that says what is wrong."""
 
 from __future__ import annotations
 
@@ -7,15 +7,22 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from afkb.errors import SourceError
+from afkb.errors import AfkbError, SourceError
 
 Options = TypeVar("Options", bound=BaseModel)
 
 
-def read_options(model: type[Options], uri: str, options: Mapping[str, str]) -> Options:
-    """The options as `model`; `SourceError` names the option, its value and those that exist.
+def read_options(
+    model: type[Options],
+    uri: str,
+    options: Mapping[str, str],
+    what: str = "source",
+    error_type: type[AfkbError] = SourceError,
+) -> Options:
+    """The options as `model`; the error names the option, its value and those that exist.
 
     Let the model forbid extra fields, so that a misspelt option is refused and not ignored.
+    `uri`: whose options they are: a recording, or a plugin's name. `what` they belong to.
     """
     try:
         return model.model_validate(dict(options))
@@ -27,4 +34,4 @@ def read_options(model: type[Options], uri: str, options: Mapping[str, str]) -> 
             reason = f"unknown option {name!r}"
         else:
             reason = f"option {name}={options.get(name, '')!r}: {first['msg']}"
-        raise SourceError(f"{uri}: {reason}; this source takes: {known}") from error
+        raise error_type(f"{uri}: {reason}; this {what} takes: {known}") from error

@@ -152,7 +152,8 @@ class RoomClassifier(Protocol):
 class Exporter(Protocol):
     """Writes a map in some format.
 
-    `in_map_folder`: part of every map folder (nav2 grid, report), not only of `afkb export`.
+    `in_map_folder`: part of every map folder (nav2 grid, report), not only of `afkb export`. The
+    first line of its class's docstring is what `afkb export --list` says of it.
     """
 
     @property
@@ -169,4 +170,58 @@ class Exporter(Protocol):
         self, topological_map: TopologicalMap, folder: Path, run: Mapping[str, object]
     ) -> Sequence[Path]:
         """Write into an existing folder; return the files written. `run` is run.json's content."""
+        ...
+
+
+@runtime_checkable
+class AdjustableExporter(Exporter, Protocol):
+    """An exporter that takes options: `afkb export --option key=value`."""
+
+    @property
+    def options(self) -> Mapping[str, str]:
+        """What it takes: each option's name, and what it does in a few words."""
+        ...
+
+    def with_options(self, options: Mapping[str, str]) -> Exporter:
+        """The same exporter set so; raises `PluginError` for an option or value it can't take."""
+        ...
+
+
+@runtime_checkable
+class SceneExporter(Exporter, Protocol):
+    """An exporter that rather works from a stored map's RDF than from the map itself."""
+
+    def export_scene(
+        self, turtle: bytes, folder: Path, run: Mapping[str, object]
+    ) -> Sequence[Path]:
+        """As `export`, given the content of scene.ttl; `afkb export` calls this instead."""
+        ...
+
+
+@runtime_checkable
+class Viewer(Protocol):
+    """Shows a map while it is made: `afkb map --view NAME`.
+
+    What it does changes nothing in the map. One that fails is named and left out; the run goes on.
+    """
+
+    @property
+    def name(self) -> str:
+        """Unique name, as given on the command line."""
+        ...
+
+    def begin(self, uri: str) -> None:
+        """Called once, before the first view, with the recording's URI.
+
+        Raises `PluginError` where it can't show anything, because a package is missing: the run
+        then doesn't begin.
+        """
+        ...
+
+    def show(self, view: View, detections: Sequence[Detection]) -> None:
+        """A placed view (`T_map_base` is set) and what was detected in it."""
+        ...
+
+    def end(self, topological_map: TopologicalMap) -> None:
+        """The finished map, its loops closed: places may have moved since they were shown."""
         ...

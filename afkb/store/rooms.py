@@ -28,7 +28,7 @@ def describe_room(scribe: Scribe, room: Room) -> None:
     for classifier, belief in sorted(room.other_beliefs.items()):
         _other_belief(scribe, node, classifier, belief)
     for name, count in sorted(room.evidence.items()):
-        counted = NamedNode(f"{node.value}-evidence-{name}")
+        counted = NamedNode(f"{node.value}-evidence-{escaped(name)}")
         scribe.say(node, "afn:counted", counted)
         scribe.say(counted, "afn:ofEvidenceClass", scribe.individual(name))
         scribe.say(counted, "rdf:value", int(count))

@@ -78,7 +78,7 @@ class StoredMap:
         """Everything of class `afn:<name>`, in order of id (`e2` before `e10`)."""
         quads = self.store.quads_for_pattern(None, term("rdf:type"), term(f"afn:{name}"))
         named = [q.subject for q in quads if isinstance(q.subject, NamedNode)]
-        return sorted(named, key=lambda n: _natural(local_name(n.value)))
+        return sorted(named, key=lambda n: natural(local_name(n.value)))
 
     def values(self, node: NamedNode, predicate: str) -> Iterator[NamedNode | Literal]:
         """What the scene states of a thing."""
@@ -96,7 +96,7 @@ class StoredMap:
             local_name(v.value) if isinstance(v, NamedNode) else v.value
             for v in self.values(node, predicate)
         ]
-        return sorted(found, key=_natural)
+        return sorted(found, key=natural)
 
     def name(self, node: NamedNode, predicate: str) -> str | None:
         """The one thing that is stated, or None."""
@@ -116,7 +116,7 @@ class StoredMap:
         for geometry in self.values(node, "geo:hasGeometry"):
             if isinstance(geometry, NamedNode):
                 for wkt in self.values(geometry, "geo:asWKT"):
-                    return _points(wkt.value)
+                    return points(wkt.value)
         return None
 
     @cached_property
@@ -139,13 +139,15 @@ class StoredMap:
         return sorted(v.value for v in self.values(NamedNode(self.base + "map"), "rdfs:comment"))
 
 
-def _natural(name: str) -> tuple[str, int, str]:
+def natural(name: str) -> tuple[str, int, str]:
+    """A key that sorts names as people do: `e2` before `e10`."""
     stem = name.rstrip("0123456789")
     digits = name[len(stem) :]
     return stem, int(digits) if digits else -1, name
 
 
-def _points(wkt: str) -> list[list[float]]:
+def points(wkt: str) -> list[list[float]]:
+    """The corners [x, y] of a polygon or line in well-known text, the first not told twice."""
     inner = wkt[wkt.index("(") :].strip("() ")
     points = [[float(v) for v in pair.split()] for pair in inner.split(",")]
     closed = wkt.startswith("POLYGON") and len(points) > 1 and points[0] == points[-1]

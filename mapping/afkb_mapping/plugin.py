@@ -38,9 +38,10 @@ def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
 
 @hookimpl
 def afkb_commands(cli: typer.Typer, knowledge_base: AfNet) -> None:
-    """Add `map`, `demo`, `detect`, `locate`, `route` and `diff`."""
+    """Add `map`, `demo`, `detect`, `locate`, `route`, `diff` and `export`."""
     from afkb_mapping.commands import demo, map_
     from afkb_mapping.detect_command import detect
+    from afkb_mapping.exporting.export_command import export
     from afkb_mapping.localisation.locate_command import locate
     from afkb_mapping.routes.route_command import route
     from afkb_mapping.visits.diff_command import diff
@@ -51,3 +52,4 @@ def afkb_commands(cli: typer.Typer, knowledge_base: AfNet) -> None:
     cli.command()(locate)
     cli.command()(route)
     cli.command()(diff)
+    cli.command()(export)

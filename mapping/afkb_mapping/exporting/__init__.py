@@ -1,0 +1,1 @@
+"""Stored maps written in other formats: the export itself, and the command."""
