@@ -5,8 +5,8 @@
 
 from afkb.store.folder import check_out
 from afkb.store.results import QueryResult
-from afkb.store.sparql import query
+from afkb.store.sparql import Dataset, query
 from afkb.store.stored import StoredMap, load
 from afkb.store.write import write_map
 
-__all__ = ["QueryResult", "StoredMap", "check_out", "load", "query", "write_map"]
+__all__ = ["Dataset", "QueryResult", "StoredMap", "check_out", "load", "query", "write_map"]

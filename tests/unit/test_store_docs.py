@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from afkb.knowledge import AfNet
-from afkb.store import StoredMap, load, query, write_map
+from afkb.store import Dataset, StoredMap, load, write_map
 from afkb.store.named import named_queries
 from afkb.store.shapes import info_json, node_json, rooms_json
 from store_samples import Names, sample_map
@@ -28,9 +28,14 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> StoredMap:
     return load(write_map(folder, sample_map(), {}, [], Names()))
 
 
+@pytest.fixture(scope="module")
+def everything(stored: StoredMap) -> Dataset:
+    return Dataset.load([stored], AfNet().files)
+
+
 @pytest.mark.parametrize("sparql", blocks(COOKBOOK, "sparql"))
-def test_every_question_of_the_cookbook_has_an_answer(stored: StoredMap, sparql: str) -> None:
-    answer = query([stored], sparql, AfNet().files)
+def test_every_question_of_the_cookbook_has_an_answer(everything: Dataset, sparql: str) -> None:
+    answer = everything.ask(sparql)
     assert answer.truth or answer.rows
 
 
@@ -70,11 +75,11 @@ def test_the_reference_lists_every_term_and_key(stored: StoredMap) -> None:
     assert not {key for key in keys if f'"{key}"' not in REFERENCE and f"`{key}`" not in REFERENCE}
 
 
-def test_the_ontology_declares_every_term_of_a_scene(stored: StoredMap) -> None:
+def test_the_ontology_declares_every_term_of_a_scene(everything: Dataset) -> None:
     sparql = """
         SELECT DISTINCT ?term WHERE {
           GRAPH ?map { { ?s ?term ?o } UNION { ?s a ?term } }
           FILTER (?map != <urn:afkb:ontology> && STRSTARTS(STR(?term), STR(afn:)))
           FILTER NOT EXISTS { GRAPH <urn:afkb:ontology> { ?term skos:definition ?definition } }
         }"""
-    assert query([stored], sparql, AfNet().files).cells() == []
+    assert everything.ask(sparql).cells() == []

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pyoxigraph import Store
 
 from afkb.errors import KnowledgeError, QueryError
-from afkb.store import StoredMap, load, query, write_map
+from afkb.store import Dataset, StoredMap, load, query, write_map
 from afkb.store.named import named_queries, named_query
 from afkb.store.sparql_text import refuse_writing
 from store_samples import Names, sample_map
@@ -160,3 +161,74 @@ def test_an_unknown_name_lists_the_library() -> None:
 def test_a_bound_says_how_well_its_line_is_known(stored: StoredMap) -> None:
     asked = "SELECT ?m ?rad { ?b a afn:Bound ; afn:offsetSigma ?m ; afn:yawSigma ?rad }"
     assert ask(stored, asked) == [("0.01", "0.005")]
+
+
+def test_from_and_from_named_are_all_that_is_asked(tmp_path: Path) -> None:
+    import dataclasses
+
+    whole = sample_map()
+    other = dataclasses.replace(whole, entities=whole.entities[:1], closures=(), edges=())
+    maps = [
+        load(write_map(tmp_path / name, content, {}, [], Names()))
+        for name, content in (("a", whole), ("b", other))
+    ]
+    both = Dataset.load(maps)
+
+    def count(clause: str, **graphs: list[str]) -> str:
+        sparql = f"SELECT (COUNT(?n) AS ?c) {clause} {{ ?n a afn:ObservedEntity }}"
+        return both.ask(sparql, **graphs).cells()[0][0]
+
+    assert count("") == "4"
+    assert count("FROM <urn:afkb:map:b>") == "1"
+    assert count("FROM <urn:afkb:map:a> FROM <urn:afkb:map:b>") == "4"
+    assert count("FROM NAMED <urn:afkb:map:b>") == "0"
+    assert count("FROM <urn:afkb:map:a>", default_graphs=["urn:afkb:map:b"]) == "1"
+    assert count("FROM <urn:afkb:believed>") == "0"
+    by_graph = "SELECT DISTINCT ?g FROM NAMED <urn:afkb:map:b> { GRAPH ?g { ?s ?p ?o } }"
+    assert both.ask(by_graph).cells() == [("urn:afkb:map:b",)]
+    with pytest.raises(QueryError, match="no graph <urn:x> here; there are: urn:afkb:believed"):
+        both.ask("SELECT * # FROM\nFROM # <urn:y>\n<urn:x> { ?s ?p ?o }")
+
+
+GLUE = st.sampled_from(
+    [
+        "SERVICE", "service", "SILENT", "<http://127.0.0.1:1/>", ":x", "a:x", "service:x", "{", "}",
+        "{ ?s ?p ?o }", "?x", "?s ?p ?o", ".", "<", "<2", ">", "#", "#>", "\n", " ", ")", "FILTER(",
+        "?x", "\\#", "\\'", "'", '"', "FILTER(?x<2)", "a:b.", "true.", "BIND(1 AS ?x)", "UNION",
+    ]
+)  # fmt: skip
+
+
+@given(st.lists(GLUE, max_size=8))
+@settings(max_examples=80, deadline=None)
+def test_no_call_of_another_server_hides_from_the_guard(pieces: list[str]) -> None:
+    """Oxigraph is the judge: it refuses to call port 1, and says so when it would."""
+    prefixes = "".join(f"PREFIX {name}: <http://127.0.0.1:1/> " for name in ("", "a", "service"))
+    sparql = f"{prefixes} SELECT * {{ {{}} UNION {{ {''.join(pieces)} }} }}"
+    try:
+        refuse_writing(sparql)
+    except QueryError:
+        return
+    try:
+        Store().query(sparql)
+    except (SyntaxError, ValueError, RuntimeError):
+        return
+    except OSError as called:
+        raise AssertionError(sparql) from called
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [
+        "SERVICE:x { ?s ?p ?o }",
+        "SERVICEa:x { ?s ?p ?o }",
+        "SERVICESILENT <http://127.0.0.1:1/> { ?s ?p ?o }",
+        "?s a:x\\# 1 . SERVICE <http://127.0.0.1:1/> { ?s ?p ?o }",
+        "?s a:x\\' 1 . SERVICE <http://127.0.0.1:1/> { ?s a:x\\' 2 }",
+        "BIND(1 AS ?x) FILTER(?x<2)SERVICE#>\n<http://127.0.0.1:1/> { ?s ?p ?o }",
+    ],
+)
+def test_a_hidden_service_is_refused(hidden: str) -> None:
+    prefixes = "PREFIX : <http://127.0.0.1:1/> PREFIX a: <urn:a#> "
+    with pytest.raises(QueryError, match="SERVICE"):
+        refuse_writing(f"{prefixes} SELECT * {{ {hidden} }}")
