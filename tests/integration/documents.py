@@ -6,10 +6,17 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from running import ROOT
-
+ROOT = Path(__file__).parents[2]
 _FENCE = re.compile(r"^```(\w+)[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+
+
+RUN_BY_THEIR_OWN_TESTS = (
+    "examples/my_home/README.md",
+    "examples/own_feature/README.md",
+    "examples/third_party/README.md",
+)
+"""Documents whose commands run once, in the test that also looks at what came of them."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import pytest
 
-from documents import Block, blocks, links
+from documents import RUN_BY_THEIR_OWN_TESTS, Block, blocks, links
 from running import ROOT
 
 pytestmark = pytest.mark.xdist_group("integration")
@@ -78,7 +78,9 @@ def _run(command: list[str], desk: Path, environment: dict[str, str], where: str
     assert done.returncode == 0, f"{where}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
 
 
-@pytest.mark.parametrize("document", sorted({b.document for b in blocks("bash")}))
+@pytest.mark.parametrize(
+    "document", sorted({b.document for b in blocks("bash")} - set(RUN_BY_THEIR_OWN_TESTS))
+)
 def test_commands_run(
     document: str, desks: dict[str, Path], environment: dict[str, str], recordings: Path | None
 ) -> None:
@@ -130,6 +132,12 @@ def test_what_is_named_without_being_run_is_there(block: Block, recordings: Path
             assert module.with_suffix(".py").exists() or (module / "__main__.py").exists(), line
         else:
             assert command in {"afkb", "cd", "git", "source", ".venv/bin/afkb"}, line
+
+
+@pytest.mark.parametrize("document", RUN_BY_THEIR_OWN_TESTS)
+def test_what_runs_elsewhere_has_a_test_that_runs_it(document: str) -> None:
+    test = Path(__file__).parent / f"test_{Path(document).parent.name}.py"
+    assert f'run_document("{document}"' in test.read_text(encoding="utf-8")
 
 
 def test_the_pictures_are_plans_of_maps(demo_folder: Path, tmp_path: Path) -> None:

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-from documents import blocks
-from running import ROOT, run_afkb
+from running import ROOT, run_afkb, run_document
 
 pytestmark = pytest.mark.xdist_group("examples")
-README = "examples/my_home/README.md"
 EXTENSION = str(ROOT / "examples" / "my_home" / "my-home.yaml")
 BENCHES_XY = [(3.9, 3.2), (3.2, 0.7)]
 """In the world file; the map's origin is the first base pose (0.8, 1.8)."""
@@ -24,21 +19,7 @@ BENCHES_XY = [(3.9, 3.2), (3.2, 0.7)]
 def said(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
     """The folder in which the README's commands ran, and what each block of them printed."""
     folder = tmp_path_factory.mktemp("my-home")
-    (folder / "examples").symlink_to(ROOT / "examples")
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    printed = []
-    for block in (b for b in blocks("bash") if b.document == README):
-        done = subprocess.run(
-            ["bash", "-euo", "pipefail", "-c", block.text],
-            cwd=folder,
-            env=os.environ | {"PATH": path, "COLUMNS": "200"},
-            capture_output=True,
-            text=True,
-            timeout=900,
-            check=False,
-        )
-        assert done.returncode == 0, f"{block.id}\n{done.stderr}"
-        printed.append(done.stdout)
+    printed = run_document("examples/my_home/README.md", folder)
     return {"folder": folder, "printed": printed}
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from running import ROOT, run_afkb
+from running import ROOT, run_afkb, run_document
 
 pytestmark = pytest.mark.xdist_group("examples")
 FOLDER = ROOT / "examples" / "own_feature"
@@ -17,7 +17,7 @@ STOOL_XYZ = (2.6 - 0.6, 2.4 - 1.7, 0.24)
 
 
 def test_only_what_is_low_and_level_affords_a_step(tmp_path: Path) -> None:
-    run_afkb("map", str(FOLDER / "pantry.world.yaml"), *STEPS, "--out", "pantry", cwd=tmp_path)
+    run_document("examples/own_feature/README.md", tmp_path)
     asked = ("--file", str(FOLDER / "steps.rq"), *STEPS, "--format", "json")
     (row,) = json.loads(run_afkb("query", "pantry", *asked, cwd=tmp_path))["results"]["bindings"]
     found = tuple(float(row[axis]["value"]) for axis in "xyz")

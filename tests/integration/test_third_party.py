@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from running import ROOT, run_afkb
+from running import ROOT, run_afkb, run_document
 
 PACKAGE = ROOT / "examples" / "third_party"
 pytestmark = pytest.mark.xdist_group("examples")
@@ -33,9 +33,7 @@ testing.check_ontology(afkb_playroom.afkb_ontologies()[0], host.knowledge_base)
 def playroom(third_party: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder that holds the map `playroom`, made with the package's detector and mapper."""
     folder = tmp_path_factory.mktemp("playroom")
-    world = str(PACKAGE / "playroom.world.yaml")
-    chosen = ["--detector", "surfaces", "--detector", "balls", "--mapper", "skeleton"]
-    run_afkb("map", world, "--out", "playroom", *chosen, cwd=folder, extra_path=third_party)
+    run_document("examples/third_party/README.md", folder, third_party)
     return folder
 
 
