@@ -70,6 +70,7 @@ def _add_scene_commands(cli: typer.Typer) -> None:
         plugin_commands,
         query_command,
         scene_commands,
+        serve_command,
         store_commands,
         why_command,
     )
@@ -79,6 +80,7 @@ def _add_scene_commands(cli: typer.Typer) -> None:
     cli.command()(query_command.query)
     cli.command()(find_command.find)
     cli.command()(why_command.why)
+    cli.command()(serve_command.serve)
     cli.command()(plugin_commands.plugins)
     cli.add_typer(store_commands.app, name="store")
     if importlib.util.find_spec(_ONTOLOGY_COMMANDS):

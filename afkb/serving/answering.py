@@ -1,0 +1,129 @@
+"""A query's answer as bytes of the media type that the client likes; runs in a sealed process."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from pyoxigraph import (
+    QueryBoolean,
+    QueryResultsFormat,
+    QuerySolutions,
+    QueryTriples,
+    RdfFormat,
+    serialize,
+)
+
+from afkb.errors import QueryError
+from afkb.serving.errors import Refused
+from afkb.serving.negotiation import preferred
+from afkb.serving.shelf import Shelf
+from afkb.store.sparql_text import refuse_writing, syntax_error
+
+RESULTS = {
+    "application/sparql-results+json": QueryResultsFormat.JSON,
+    "application/json": QueryResultsFormat.JSON,
+    "application/sparql-results+xml": QueryResultsFormat.XML,
+    "application/xml": QueryResultsFormat.XML,
+    "text/csv": QueryResultsFormat.CSV,
+    "text/tab-separated-values": QueryResultsFormat.TSV,
+}
+"""Forms of what SELECT and ASK give, the usual one first."""
+GRAPHS = {
+    "text/turtle": RdfFormat.TURTLE,
+    "application/n-triples": RdfFormat.N_TRIPLES,
+    "application/ld+json": RdfFormat.JSON_LD,
+    "application/rdf+xml": RdfFormat.RDF_XML,
+}
+"""Forms of what CONSTRUCT and DESCRIBE give, the usual one first."""
+_EXPLAINED_BELOW = 4000
+"""Characters; a longer query's slip is told by Oxigraph alone, since the second parser, which
+places it more closely, takes seconds for it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A query with what the protocol lets one say of it.
+
+    `default_graphs`, `named_graphs`: IRIs; empty for all that is served. `accept`: the header.
+    """
+
+    sparql: str
+    default_graphs: Sequence[str] = ()
+    named_graphs: Sequence[str] = ()
+    accept: str = ""
+
+
+@dataclass(slots=True)
+class Bounded:
+    """A file to write to that holds so many bytes and refuses more."""
+
+    most: int
+    parts: list[bytes] = field(default_factory=list)
+    length: int = 0
+
+    def write(self, data: bytes) -> int:
+        """Keep them; `Refused` where that is too much."""
+        self.length += len(data)
+        if self.length > self.most:
+            raise Refused(
+                422,
+                f"the answer is larger than {self.most / (1 << 20):g} MB; ask for less, or in "
+                "parts with LIMIT and OFFSET",
+            )
+        self.parts.append(bytes(data))
+        return len(data)
+
+    def flush(self) -> None:
+        """Nothing waits to be written."""
+
+
+def answer(shelf: Shelf, question: Question, most_bytes: int) -> tuple[str, bytes]:
+    """The media type and the bytes of an answer.
+
+    `QueryError` for what can't be parsed or isn't allowed, `Refused` for a form that there is not
+    and for an answer of more than `most_bytes`.
+    """
+    refuse_writing(question.sparql)
+    found = _found(shelf, question)
+    out = Bounded(most_bytes)
+    try:
+        if isinstance(found, QueryTriples):
+            media = _chosen(question.accept, tuple(GRAPHS))
+            prefixes = shelf.prefixes if media == "text/turtle" else None
+            serialize(found, out, GRAPHS[media], prefixes=prefixes)  # type: ignore[arg-type]
+        else:
+            media = _chosen(question.accept, tuple(RESULTS))
+            found.serialize(out, RESULTS[media])  # type: ignore[arg-type]
+    except (OSError, ValueError) as error:
+        raise QueryError(f"the query failed while it ran: {_first_line(error)}") from error
+    return media, b"".join(out.parts)
+
+
+def _found(shelf: Shelf, question: Question) -> QuerySolutions | QueryBoolean | QueryTriples:
+    own = bool(question.default_graphs or question.named_graphs)
+    try:
+        return shelf.store.query(
+            question.sparql,
+            prefixes=shelf.prefixes,
+            use_default_graph_as_union=not own,
+            default_graph=[*shelf.known(question.default_graphs)] if own else None,
+            named_graphs=[*shelf.known(question.named_graphs)] if own else None,
+        )
+    except SyntaxError as error:
+        if len(question.sparql) > _EXPLAINED_BELOW:
+            raise QueryError(f"SPARQL syntax error: {_first_line(error)}") from error
+        raise syntax_error(question.sparql, error) from error
+    except (ValueError, OSError) as error:
+        raise QueryError(f"the query can't be answered: {_first_line(error)}") from error
+
+
+def _chosen(accept: str, offered: Sequence[str]) -> str:
+    media = preferred(accept, offered)
+    if media is None:
+        raise Refused(406, f"this answer comes as {', '.join(offered)}; ask for one of them")
+    return media
+
+
+def _first_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:300]
