@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from pyoxigraph import (
-    QueryBoolean,
     QueryResultsFormat,
-    QuerySolutions,
     QueryTriples,
     RdfFormat,
     serialize,
@@ -18,7 +16,6 @@ from afkb.errors import QueryError
 from afkb.serving.errors import Refused
 from afkb.serving.negotiation import preferred
 from afkb.serving.shelf import Shelf
-from afkb.store.sparql_text import refuse_writing, syntax_error
 
 RESULTS = {
     "application/sparql-results+json": QueryResultsFormat.JSON,
@@ -36,9 +33,6 @@ GRAPHS = {
     "application/rdf+xml": RdfFormat.RDF_XML,
 }
 """Forms of what CONSTRUCT and DESCRIBE give, the usual one first."""
-_EXPLAINED_BELOW = 4000
-"""Characters; a longer query's slip is told by Oxigraph alone, since the second parser, which
-places it more closely, takes seconds for it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,38 +78,21 @@ def answer(shelf: Shelf, question: Question, most_bytes: int) -> tuple[str, byte
     `QueryError` for what can't be parsed or isn't allowed, `Refused` for a form that there is not
     and for an answer of more than `most_bytes`.
     """
-    refuse_writing(question.sparql)
-    found = _found(shelf, question)
+    asked = (question.sparql, question.default_graphs, question.named_graphs)
+    found = shelf.dataset.answer(*asked)
     out = Bounded(most_bytes)
     try:
         if isinstance(found, QueryTriples):
             media = _chosen(question.accept, tuple(GRAPHS))
-            prefixes = shelf.prefixes if media == "text/turtle" else None
+            prefixes = dict(shelf.dataset.prefixes) if media == "text/turtle" else None
             serialize(found, out, GRAPHS[media], prefixes=prefixes)  # type: ignore[arg-type]
         else:
             media = _chosen(question.accept, tuple(RESULTS))
             found.serialize(out, RESULTS[media])  # type: ignore[arg-type]
     except (OSError, ValueError) as error:
-        raise QueryError(f"the query failed while it ran: {_first_line(error)}") from error
+        told = " ".join(str(error).split())[:300]
+        raise QueryError(f"the query failed while it ran: {told}") from error
     return media, b"".join(out.parts)
-
-
-def _found(shelf: Shelf, question: Question) -> QuerySolutions | QueryBoolean | QueryTriples:
-    own = bool(question.default_graphs or question.named_graphs)
-    try:
-        return shelf.store.query(
-            question.sparql,
-            prefixes=shelf.prefixes,
-            use_default_graph_as_union=not own,
-            default_graph=[*shelf.known(question.default_graphs)] if own else None,
-            named_graphs=[*shelf.known(question.named_graphs)] if own else None,
-        )
-    except SyntaxError as error:
-        if len(question.sparql) > _EXPLAINED_BELOW:
-            raise QueryError(f"SPARQL syntax error: {_first_line(error)}") from error
-        raise syntax_error(question.sparql, error) from error
-    except (ValueError, OSError) as error:
-        raise QueryError(f"the query can't be answered: {_first_line(error)}") from error
 
 
 def _chosen(accept: str, offered: Sequence[str]) -> str:
@@ -123,7 +100,3 @@ def _chosen(accept: str, offered: Sequence[str]) -> str:
     if media is None:
         raise Refused(406, f"this answer comes as {', '.join(offered)}; ask for one of them")
     return media
-
-
-def _first_line(error: Exception) -> str:
-    return " ".join(str(error).split())[:300]

@@ -61,8 +61,9 @@ def _telling(shelf: Shelf, asked: Head) -> tuple[str, bytes]:
     stored = shelf.maps[asked["map"]]
     node = asked.get("node")
     if node is None:
-        from afkb.drawing import drawing_of_stored
+        import afkb.drawing
 
+        drawing_of_stored = getattr(afkb.drawing, "drawing_of_stored")  # noqa: B009
         told = drawing_of_stored(stored) | {"name": asked["map"]}
     else:
         from afkb.explaining import explain

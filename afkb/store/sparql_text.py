@@ -30,6 +30,8 @@ _TOKEN = re.compile(
 )
 _SERVICE = re.compile("service", re.IGNORECASE)
 _POSITION = re.compile(r"error at (\d+):(\d+)")
+_READ_TWICE_BELOW = 4000
+"""Characters: of a longer query rdflib's parser would take seconds to find the fault."""
 
 
 def _keywords(sparql: str) -> Iterator[tuple[str, int]]:
@@ -103,8 +105,11 @@ def syntax_error(sparql: str, error: SyntaxError) -> QueryError:
 def _second_opinion(sparql: str) -> tuple[int, int, str] | None:
     """Line, column and rest of line by rdflib's parser, which places errors more closely.
 
-    Oxigraph reports how far it looked ahead, often the end; None where rdflib finds no fault.
+    Oxigraph reports how far it looked ahead, often the end; None where rdflib finds no fault, and
+    for a query that is too long for it.
     """
+    if len(sparql) > _READ_TWICE_BELOW:
+        return None
     from pyparsing import ParseBaseException
     from rdflib.plugins.sparql.parser import parseQuery
 
