@@ -1,4 +1,4 @@
-"""Things from mesh files (OBJ, PLY, STL, OFF, glTF), z up, as Open3D reads them."""
+"""Things from mesh files: put on their foot, scaled, with the surface that things stand on."""
 
 from __future__ import annotations
 
@@ -9,19 +9,22 @@ from numpy.typing import NDArray
 
 from afkb.errors import SourceError
 from afkb_simulation.built import Built, Size, Support
-from afkb_simulation.casting import import_open3d
+from afkb_simulation.file_types import Up
+from afkb_simulation.mesh_loading import load_mesh
 from afkb_simulation.meshes import Mesh
 
 _LEVEL_COSINE = 0.98
 _BIN_M = 0.02
 
 
-def built_from_file(path: Path, size: Size | None, key: str) -> Built:
+def built_from_file(
+    path: Path, size: Size | None, key: str, up: Up | None = None, unit_m: float = 1.0
+) -> Built:
     """The mesh, its foot's middle at the origin, scaled to `size` (m) where one is given.
 
     Its main upper surface is the height at which most of its level area lies.
     """
-    mesh = _read(path, key)
+    mesh = load_mesh(path, up, unit_m, key)
     lower, upper = mesh.bounds
     extent = upper - lower
     if (extent <= 0).any():
@@ -32,19 +35,6 @@ def built_from_file(path: Path, size: Size | None, key: str) -> Built:
     support = _main_support(mesh)
     top = support.z if support else float(mesh.bounds[1][2])
     return Built(mesh, top, (support,) if support else ())
-
-
-def _read(path: Path, key: str) -> Mesh:
-    if not path.is_file():
-        raise SourceError(f"{key}: no mesh file {path}; paths count from the world file's folder")
-    o3d = import_open3d()
-    with o3d.utility.VerbosityContextManager(o3d.utility.VerbosityLevel.Error):
-        read = o3d.io.read_triangle_mesh(str(path))
-    triangles = np.asarray(read.triangles, dtype=np.uint32)
-    vertices = np.asarray(read.vertices, dtype=np.float64)
-    if len(triangles) == 0 or not np.isfinite(vertices).all():
-        raise SourceError(f"{key}: {path} holds no triangles; give an OBJ, PLY, STL or OFF mesh")
-    return Mesh(vertices, triangles)
 
 
 def _main_support(mesh: Mesh) -> Support | None:

@@ -80,10 +80,10 @@ def _place(
     if carrier:
         T = _T_world_support(carrier, thing, path) @ T
     room = room_at(world, (float(T[0, 3]), float(T[1, 3])))
-    if room is None:
+    if room is None and world.rooms:
         raise SourceError(f"{path}: things ({thing.name}).at: in no room; move it into one")
     built = _build(thing, path)
-    placed[thing.name] = Placed(thing, built, T, room)
+    placed[thing.name] = Placed(thing, built, T, room or "")
     return placed[thing.name]
 
 
@@ -93,7 +93,7 @@ def _build(thing: ThingFile, path: Path) -> Built:
     from afkb_simulation.mesh_files import built_from_file
 
     key = f"{path}: things ({thing.name}).file"
-    return built_from_file(path.parent / thing.file, thing.size, key)
+    return built_from_file(path.parent / thing.file, thing.size, key, thing.up, thing.unit_m)
 
 
 def _T_world_support(carrier: Placed, thing: ThingFile, path: Path) -> NDArray[np.float64]:

@@ -13,10 +13,12 @@ from afkb.errors import SourceError
 from afkb.flow import LaserScan, PinholeCamera, View
 from afkb_mapping.geometry import T_from_xy_yaw
 from afkb_simulation.casting import Caster, Hits, camera_rays, laser_rays, turned
+from afkb_simulation.meshes import Mesh
 from afkb_simulation.noise import noisy_depth, noisy_ranges
 from afkb_simulation.odometry import drifting
 from afkb_simulation.placing import Placed, place_all, room_at
 from afkb_simulation.rooms import building, openings
+from afkb_simulation.scene_mesh import check_stops, scene_mesh
 from afkb_simulation.tour import stops
 from afkb_simulation.way import check_way
 from afkb_simulation.world_file import CameraFile, LaserFile, WorldFile
@@ -34,11 +36,20 @@ class Simulation:
         self.stops = stops(world.tour)
         self.T_world_base = [T_from_xy_yaw(s.x, s.y, s.yaw) for s in self.stops]
         check_way(world, self.stops, self.placed, self.present, path)
+        self._shell = self._fixed(path)
         rng = np.random.default_rng([world.seed, _ODOMETRY_STREAM])
         self._T_odom_base = drifting(self.T_world_base, world.odometry_drift, rng)
         # labels, heights and depth of one frame share its rays
         self.camera_hits = lru_cache(maxsize=1)(self._camera_hits)
         self._caster_of = lru_cache(maxsize=2)(self._build_caster)
+
+    def _fixed(self, path: Path) -> Mesh:
+        """All that stands still: a scene's mesh, else walls, floors and ceilings of the rooms."""
+        if self.world.scene is None:
+            return building(self.world, self.openings)
+        mesh = scene_mesh(self.world.scene, path)
+        check_stops(self.world, self.stops, mesh, path)
+        return mesh
 
     @cached_property
     def camera(self) -> PinholeCamera | None:
@@ -117,7 +128,7 @@ class Simulation:
 
     def _build_caster(self, present: tuple[int, ...]) -> Caster:
         things = [self.placed[i].mesh for i in present]
-        return Caster([building(self.world, self.openings), *things])
+        return Caster([self._shell, *things])
 
     def _mesh_numbers(self, index: int) -> NDArray[np.int32]:
         """From the caster's mesh index (-1 last) to 0 for the building, 1 + i for thing i."""

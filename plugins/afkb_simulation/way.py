@@ -28,7 +28,8 @@ def check_way(
         name = world.tour.waypoints[stop.leg].name
         key = f"{path}: tour.waypoints ({name})"
         at = f"({stop.x:.2f}, {stop.y:.2f})"
-        if room_at(world, (stop.x, stop.y)) is None and not _in_doorway(world, stop):
+        inside = room_at(world, (stop.x, stop.y)) is not None or not world.rooms
+        if not inside and not _in_doorway(world, stop):
             raise SourceError(
                 f"{key}: the way there leaves the rooms at {at}; "
                 "lead it through a doorway with `via`"

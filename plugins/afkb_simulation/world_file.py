@@ -4,37 +4,29 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
+from afkb_simulation.file_types import (
+    XY,
+    Category,
+    Coordinate,
+    Degrees,
+    FileName,
+    Limits,
+    Name,
+    NotNegative,
+    Positive,
+    Probability,
+    Strict,
+    Up,
+)
 from afkb_simulation.polygons import crosses_itself, signed_area
 from afkb_simulation.shapes import SHAPES, Shape
 
 MESH = "mesh"
 
-Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]*$")]
-Category = Annotated[str, Field(pattern=r"^[A-Z][A-Za-z0-9]*$")]
-Positive = Annotated[float, Field(gt=0, le=100)]
-NotNegative = Annotated[float, Field(ge=0, le=100)]
-Coordinate = Annotated[float, Field(ge=-200, le=200)]
-Degrees = Annotated[float, Field(ge=-3600, le=3600)]
-XY = tuple[Coordinate, Coordinate]
-Probability = Annotated[float, Field(ge=0, le=1)]
 
-
-def _ordered(limits: tuple[float, float]) -> tuple[float, float]:
-    if limits[0] >= limits[1]:
-        raise ValueError(f"nearest {limits[0]} is not below farthest {limits[1]}; swap them")
-    return limits
-
-
-Limits = Annotated[tuple[NotNegative, Positive], AfterValidator(_ordered)]
-
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
-class RoomFile(_Strict):
+class RoomFile(Strict):
     """A room by its inner wall faces: `rectangle` [x0, y0, x1, y1] or `polygon`; m."""
 
     name: Name
@@ -67,7 +59,7 @@ class RoomFile(_Strict):
         return polygon if signed_area(polygon) > 0 else tuple(reversed(polygon))
 
 
-class DoorwayFile(_Strict):
+class DoorwayFile(Strict):
     """An opening between two rooms; `at` is its middle, anywhere within the wall; m."""
 
     between: tuple[Name, Name]
@@ -76,14 +68,14 @@ class DoorwayFile(_Strict):
     height: Annotated[float, Field(ge=0.5, le=20)] = 2.0
 
 
-class Presence(_Strict):
+class Presence(Strict):
     """A thing that comes or goes: there from the way to one waypoint until another is left."""
 
     from_: Annotated[Name | None, Field(alias="from")] = None
     until: Name | None = None
 
 
-class ThingFile(_Strict):
+class ThingFile(Strict):
     """Furniture or a small thing; `at` is in the room, or relative to what it stands `on`."""
 
     name: Name
@@ -100,7 +92,9 @@ class ThingFile(_Strict):
     headboard_m: Positive | None = None
     boards: Annotated[int, Field(ge=2, le=20)] | None = None
     wall_m: Positive | None = None
-    file: Annotated[str, Field(min_length=1)] | None = None
+    file: FileName | None = None
+    up: Up | None = None
+    unit_m: Positive = 1.0
 
     @model_validator(mode="after")
     def _fits_its_shape(self) -> ThingFile:
@@ -108,6 +102,8 @@ class ThingFile(_Strict):
             raise ValueError(f"no shape {self.shape!r}; shapes: {', '.join(sorted(SHAPES))}, mesh")
         if (self.shape == MESH) != (self.file is not None):
             raise ValueError("a mesh takes a `file`, and nothing else does; add or remove it")
+        if self.file is None and (self.up is not None or self.unit_m != 1.0):
+            raise ValueError("up and unit_m are a mesh file's; remove them")
         for key in ("seat_m", "headboard_m", "boards", "wall_m"):
             if getattr(self, key) is not None and key not in self._usual.parameters:
                 raise ValueError(f"a {self.shape} takes no {key}; remove it")
@@ -139,7 +135,22 @@ class ThingFile(_Strict):
         return {key: usual[key] if value is None else value for key, value in given.items()}
 
 
-class CameraFile(_Strict):
+class SceneFile(Strict):
+    """A scanned or modelled place as one mesh file, in place of walls made of `rooms`.
+
+    - `up`: its axis that points up; left out, y for glTF and z for the rest. `unit_m`: its unit.
+    - `at`: where its origin lies, m; `floor_m`: height of its floor there, m, which becomes 0.
+    """
+
+    file: FileName
+    up: Up | None = None
+    unit_m: Positive = 1.0
+    yaw_deg: Degrees = 0.0
+    at: XY = (0.0, 0.0)
+    floor_m: Coordinate = 0.0
+
+
+class CameraFile(Strict):
     """Depth camera: pixels, horizontal field of view, where it sits on the robot."""
 
     width: Annotated[int, Field(ge=16, le=4096)] = 640
@@ -150,7 +161,7 @@ class CameraFile(_Strict):
     pitch_down_deg: Annotated[float, Field(ge=-80, le=80)] = 15.0
 
 
-class LaserFile(_Strict):
+class LaserFile(Strict):
     """Planar laser scanner."""
 
     beams: Annotated[int, Field(ge=2, le=10000)] = 720
@@ -160,7 +171,7 @@ class LaserFile(_Strict):
     range: Limits = (0.05, 12.0)
 
 
-class RobotFile(_Strict):
+class RobotFile(Strict):
     """The robot's body and sensors; leave a sensor null and views carry none."""
 
     radius_m: Positive = 0.2
@@ -174,7 +185,7 @@ class RobotFile(_Strict):
         return self
 
 
-class SensorNoise(_Strict):
+class SensorNoise(Strict):
     """Kinect-like depth noise and laser noise; all zero for perfect sensors.
 
     Axial sigma is `axial_m + axial_per_m2 (z - 0.4)²` (Nguyen, Izadi, Lovell 2012).
@@ -190,7 +201,7 @@ class SensorNoise(_Strict):
     laser_m: NotNegative = 0.01
 
 
-class OdometryDrift(_Strict):
+class OdometryDrift(Strict):
     """Bias and noise of odometry, as standard deviations per metre driven and radian turned."""
 
     along_per_m: NotNegative = 0.01
@@ -198,7 +209,7 @@ class OdometryDrift(_Strict):
     yaw_per_rad: NotNegative = 0.01
 
 
-class WaypointFile(_Strict):
+class WaypointFile(Strict):
     """Where the robot stops to look: drive `via`, stop `at`, face `yaw_deg`, then each look."""
 
     name: Name
@@ -208,7 +219,7 @@ class WaypointFile(_Strict):
     looks_deg: Annotated[tuple[Degrees, ...], Field(min_length=1)] = (0.0,)
 
 
-class TourFile(_Strict):
+class TourFile(Strict):
     """The robot's tour; consecutive frames are at most `step_m` and `turn_deg` apart."""
 
     step_m: Annotated[float, Field(ge=0.1, le=10)] = 0.45
@@ -217,15 +228,22 @@ class TourFile(_Strict):
     waypoints: Annotated[tuple[WaypointFile, ...], Field(min_length=1)]
 
 
-class WorldFile(_Strict):
+class WorldFile(Strict):
     """A whole world."""
 
     name: Name
     seed: Annotated[int, Field(ge=0)] = 0
-    rooms: Annotated[tuple[RoomFile, ...], Field(min_length=1)]
+    scene: SceneFile | None = None
+    rooms: tuple[RoomFile, ...] = ()
     doorways: tuple[DoorwayFile, ...] = ()
     things: tuple[ThingFile, ...] = ()
     robot: RobotFile = RobotFile()
     sensor_noise: SensorNoise = SensorNoise()
     odometry_drift: OdometryDrift = OdometryDrift()
     tour: TourFile
+
+    @model_validator(mode="after")
+    def _is_somewhere(self) -> WorldFile:
+        if not self.rooms and self.scene is None:
+            raise ValueError("a world needs rooms, or a scene: a mesh file; add one of them")
+        return self
