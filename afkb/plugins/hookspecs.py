@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         Predictor,
         RoomClassifier,
         Source,
+        Viewer,
     )
 
 
@@ -50,6 +51,11 @@ def afkb_room_classifiers(knowledge_base: AfNet) -> Iterable[RoomClassifier]:
 @hookspec
 def afkb_exporters(knowledge_base: AfNet) -> Iterable[Exporter]:
     """Return exporters, ready to use."""
+
+
+@hookspec
+def afkb_viewers(knowledge_base: AfNet) -> Iterable[Viewer]:
+    """Return viewers, which show a map while it is made."""
 
 
 @hookspec

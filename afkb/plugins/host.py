@@ -23,6 +23,7 @@ from afkb.plugins.protocols import (
     Predictor,
     RoomClassifier,
     Source,
+    Viewer,
 )
 
 
@@ -150,6 +151,13 @@ class PluginHost:
         """The named exporters, or all."""
         exporters: list[Exporter] = self._collect(self.manager.hook.afkb_exporters)
         return _chosen("exporter", exporters, names)
+
+    def viewers(self, names: Sequence[str]) -> list[Viewer]:
+        """The named viewers; none where none is named."""
+        if not names:
+            return []
+        viewers: list[Viewer] = self._collect(self.manager.hook.afkb_viewers)
+        return _chosen("viewer", viewers, names)
 
     def _collect(self, hook: pluggy.HookCaller) -> list[T]:
         groups: Iterable[Iterable[T]] = hook(knowledge_base=self.knowledge_base)

@@ -152,8 +152,10 @@ class RoomClassifier(Protocol):
 class Exporter(Protocol):
     """Writes a map in some format.
 
-    `in_map_folder`: part of every map folder (nav2 grid, report), not only of `afkb export`. The
-    first line of its class's docstring is what `afkb export --list` says of it.
+    - `in_map_folder`: part of every map folder (nav2 grid, report), not only of `afkb export`.
+    - `same_bytes`: optional; False where the format holds what differs from run to run, random ids.
+
+    The first line of its class's docstring is what `afkb export --list` says of it.
     """
 
     @property
@@ -210,11 +212,12 @@ class Viewer(Protocol):
         """Unique name, as given on the command line."""
         ...
 
-    def begin(self, uri: str) -> None:
+    def begin(self, uri: str, target: str | None) -> None:
         """Called once, before the first view, with the recording's URI.
 
-        Raises `PluginError` where it can't show anything, because a package is missing: the run
-        then doesn't begin.
+        `target`: what the user wrote after the name, `--view NAME=TARGET`: a file, an address.
+        Raises `PluginError` where it can't show anything, because a package is missing or the
+        target is none: the run then doesn't begin.
         """
         ...
 

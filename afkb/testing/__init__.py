@@ -18,6 +18,7 @@ from afkb.testing.room_classifiers import check_room_classifier
 from afkb.testing.sample_flow import sample_detections, sample_hypotheses, sample_map
 from afkb.testing.sample_views import sample_view, sample_views
 from afkb.testing.sources import check_source
+from afkb.testing.viewers import check_viewer
 
 __all__ = [
     "check_commands",
@@ -30,6 +31,7 @@ __all__ = [
     "check_predictor",
     "check_room_classifier",
     "check_source",
+    "check_viewer",
     "sample_detections",
     "sample_hypotheses",
     "sample_map",

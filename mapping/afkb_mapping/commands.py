@@ -59,6 +59,13 @@ def map_(
     ontology: Annotated[
         list[Path] | None, typer.Option(help="File that extends the ontology; repeatable.")
     ] = None,
+    view: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[=TARGET]",
+            help="Show the map while it is made: rerun, or rerun=FILE.rrd; repeatable.",
+        ),
+    ] = None,
     json_: Annotated[bool, typer.Option("--json", help="Print run.json's content.")] = False,
 ) -> None:
     """Turn a recording into a topological affordance map.
@@ -85,6 +92,7 @@ def map_(
         resume=resume,
         update=update is not None,
         hours_later=hours_later,
+        view=tuple(view or ()),
     )
     result = _run(host, settings)
     if json_:

@@ -19,6 +19,7 @@ from afkb_mapping.memory.recollection import Recollection
 from afkb_mapping.memory.remembered import RememberedView
 from afkb_mapping.perception import Perception, blamed
 from afkb_mapping.run_record import Settings, Stages
+from afkb_mapping.viewing import Audience
 
 
 class Crew:
@@ -27,7 +28,8 @@ class Crew:
     A mapper that says `works_from_memory` is given each view as it is remembered, so that it makes
     the same map of it when it is given it again. Any other gets all of the view, once.
 
-    `recollection`: views that an interrupted run has perceived already.
+    `recollection`: views that an interrupted run has perceived already. `audience`: who is shown
+    each view once it is in the map.
     """
 
     def __init__(
@@ -39,11 +41,13 @@ class Crew:
         memory: Memory,
         recollection: Recollection,
         network: Network,
+        audience: Audience | None = None,
     ) -> None:
         self.memory, self.stages, self.network = memory, stages, network
         self._perception, self._predictors = perception, predictors
         self._new_mapper, self._recollection = new_mapper, recollection
         self._mapper, self._bands = new_mapper(), BandBuilder()
+        self._audience = audience or Audience()
         self._replay(memory.views)
 
     @classmethod
@@ -54,6 +58,7 @@ class Crew:
         stages: Stages,
         memory: Memory,
         recollection: Recollection,
+        audience: Audience,
     ) -> Crew:
         """The plugins that were asked for. Raises `PluginError` for unknown ones."""
         factory = host.mapper_factory(settings.mapper)
@@ -65,6 +70,7 @@ class Crew:
             memory,
             recollection,
             network_of(host.knowledge_base),
+            audience,
         )
 
     @property
@@ -78,14 +84,20 @@ class Crew:
         Raises `BadFrame` where a detector or predictor fails on it, before the map has changed.
         """
         if not self.works_from_memory:
-            self._map(self._perceived(view))
+            perceived = self._perceived(view)
+            self._map(perceived)
+            detections = perceived.detections
         elif self.memory.is_worth_keeping(view):
             remembered = self._recollection.of(view) or self._perceived(view).thinned()
             self._map(remembered)
             with self.stages.timed("remember"):
                 self.memory.keep(remembered)
+            detections = remembered.detections
         else:
             self.memory.pass_by(view)
+            return
+        with self.stages.timed("show"):
+            self._audience.show(view, detections)
 
     def finish(self, T_map_source: NDArray[np.float64]) -> TopologicalMap:
         """The map of all that was taken in."""

@@ -28,6 +28,7 @@ from afkb_mapping.recordings.notes import notes_of
 from afkb_mapping.rooms.opinions import with_opinions
 from afkb_mapping.run_record import Settings, Stages, run_record
 from afkb_mapping.selection import Selection
+from afkb_mapping.viewing import Audience
 from afkb_mapping.visits.beginning import Beginning, beginning_of, check_continuing
 
 NO_DEPTH = "no depth in this recording: the map has a grid and rooms by their shape, no affordances"
@@ -71,9 +72,10 @@ def make_map(
             source = host.open_source(settings.uri, settings.options)
             selection = Selection(source, settings.frames)
             check_continuing(host, settings)
+            audience = Audience.of(host, settings.view, settings.uri)
         with stages.timed("begin"):
             beginning = beginning_of(settings, selection)
-        crew = Crew.of(host, settings, stages, beginning.memory, beginning.recollection)
+        crew = Crew.of(host, settings, stages, beginning.memory, beginning.recollection, audience)
         way = _Way(crew, beginning.visit)
         for done in way.along(beginning.placed_views(selection, stages)):
             progress(Progress(done, len(selection), way.frames_per_second))
@@ -104,6 +106,7 @@ def make_map(
             update=settings.update,
             state=_state(found, crew),
         )
+        audience.end(found)
     return RunResult(found, run, interruption.signal)
 
 

@@ -34,8 +34,9 @@ MAX_LISTED_SKIPS = 20
 class Settings:
     """What a run is asked to do; all of it is recorded in run.json.
 
-    `resume`: go on where an interrupted run to `out` stopped. `update`: `out` is the map of an
-    earlier visit; `hours_later` than that this one is, None where the stamps are to tell.
+    `view`: viewers that show the map while it is made, `NAME` or `NAME=TARGET`; they change nothing
+    in it. `resume`: go on where an interrupted run to `out` stopped. `update`: `out` is the map of
+    an earlier visit; `hours_later` than that this one is, None where the stamps are to tell.
     """
 
     uri: str
@@ -51,6 +52,7 @@ class Settings:
     resume: bool = False
     update: bool = False
     hours_later: float | None = None
+    view: tuple[str, ...] = ()
 
     @property
     def frames(self) -> FrameRange:
