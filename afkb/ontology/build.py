@@ -102,6 +102,6 @@ def _check_references(graph: Graph) -> None:
     for subject, _, value in unknown:
         place = graph.value(subject, FROM_ROW) or str(subject).removeprefix(AFN)
         raise KnowledgeError(
-            f"{place}: {value.removeprefix(AFN)} is named here, and no table has it; "
+            f"{place}: {str(value).removeprefix(AFN)} is named here, and no table has it; "
             "add it, or mend the name"
         )
