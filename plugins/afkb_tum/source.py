@@ -16,6 +16,7 @@ from afkb.flow import PinholeCamera, SkippedFrame, View
 from afkb.plugins.options import read_options
 from afkb_mapping.optical import T_BODY_OPTICAL, T_OPTICAL_BODY
 from afkb_mapping.recordings.images import common_size, read_color, read_depth
+from afkb_mapping.recordings.pose_file import Damaged, read_poses
 from afkb_mapping.recordings.pose_track import NS, T_from_pose, Track
 from afkb_tum.camera import find_calibration
 from afkb_tum.layout import (
@@ -26,7 +27,7 @@ from afkb_tum.layout import (
     checked_folder,
     pose_file,
 )
-from afkb_tum.lists import Damaged, Images, read_associations, read_images, read_poses
+from afkb_tum.lists import Images, read_associations, read_images
 
 DEPTH_SCALE = 5000.0
 """Raw depth units a metre in the benchmark's images, unless a calibration file says otherwise."""

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from afkb.errors import SourceError
 from afkb.flow import SkippedFrame, View
 from afkb.testing import check_source
+from afkb_mapping.recordings.pose_file import Damaged, read_poses
 from afkb_tum import afkb_open_source
-from afkb_tum.lists import Damaged, read_poses
 from tum_samples import T0, open_tum, png, tum_folder, write_poses
 
 CAMERA_YAML = "fx: 30\nfy: 31\ncx: 8\ncy: 6\ndepth_scale: 1000\n"
