@@ -4,11 +4,13 @@
 """
 
 from afkb.fleet.catalogue import KeptMap, kept_maps, map_graph, remove
+from afkb.fleet.keeper import Keeper
 from afkb.fleet.names import named
 from afkb.fleet.pushing import Pushed, PushState, push
 from afkb.fleet.server import Server
 
 __all__ = [
+    "Keeper",
     "KeptMap",
     "PushState",
     "Pushed",

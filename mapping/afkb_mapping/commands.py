@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from afkb.cli.output import tell
 from afkb.cli.state import state_of
 from afkb_mapping.source_options import options_of
 
@@ -66,6 +67,10 @@ def map_(
             help="Show the map while it is made: rerun, or rerun=FILE.rrd; repeatable.",
         ),
     ] = None,
+    store: Annotated[
+        str | None,
+        typer.Option(metavar="URL", help="Send the map to this SPARQL server; see `afkb store`."),
+    ] = None,
     json_: Annotated[bool, typer.Option("--json", help="Print run.json's content.")] = False,
 ) -> None:
     """Turn a recording into a topological affordance map.
@@ -74,6 +79,7 @@ def map_(
 
     Example: afkb map next-day/ --update my-map
     """
+    from afkb.fleet import Keeper
     from afkb.plugins.host import PluginHost
     from afkb_mapping.run_record import Settings
 
@@ -94,11 +100,14 @@ def map_(
         hours_later=hours_later,
         view=tuple(view or ()),
     )
+    keeper = Keeper.of(store, "", tell) if store else None
     result = _run(host, settings)
     if json_:
         typer.echo(json.dumps(result.run, indent=2))
     else:
         _print_summary(settings, result)
+    if keeper is not None:
+        tell(f"stored in <{keeper.keep(settings.out).graph}>")
     _exit_as_interrupted(result)
 
 

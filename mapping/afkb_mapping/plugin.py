@@ -38,7 +38,8 @@ def afkb_mappers(knowledge_base: AfNet) -> Iterable[MapperFactory]:
 
 @hookimpl
 def afkb_commands(cli: typer.Typer, knowledge_base: AfNet) -> None:
-    """Add `map`, `demo`, `detect`, `locate`, `route`, `diff` and `export`."""
+    """Add `map`, `batch`, `demo`, `detect`, `locate`, `route`, `diff` and `export`."""
+    from afkb_mapping.batch.batch_command import batch
     from afkb_mapping.commands import demo, map_
     from afkb_mapping.detect_command import detect
     from afkb_mapping.exporting.export_command import export
@@ -47,6 +48,7 @@ def afkb_commands(cli: typer.Typer, knowledge_base: AfNet) -> None:
     from afkb_mapping.visits.diff_command import diff
 
     cli.command(name="map")(map_)
+    cli.command()(batch)
     cli.command()(demo)
     cli.command()(detect)
     cli.command()(locate)

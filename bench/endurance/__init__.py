@@ -1,0 +1,1 @@
+"""What is left when a program or a server is killed in the middle."""

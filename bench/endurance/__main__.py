@@ -1,0 +1,20 @@
+"""Kill -9 at random moments, and see what is left: one command, part by part, as tables or JSON.
+
+    python -m bench.endurance [--json]                  all parts
+    python -m bench.endurance PART [--times N] [...]    one part
+
+Each part is killed 25 times unless `--times` says otherwise. Half of the moments are spread over
+the whole run, half over the time in which it writes its folder. Everything is made in a scratch
+folder, of the bundled home; no data are needed. `uploads` needs the Oxigraph server
+(`pip install oxigraph`).
+"""
+
+from __future__ import annotations
+
+from bench.part_by_part import run_parts
+
+PARTS = ("maps", "updates", "batches", "uploads")
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_parts("bench.endurance", PARTS, __doc__))

@@ -1,0 +1,1 @@
+"""Many recordings, each mapped in a process of its own, shared out by Dask."""
