@@ -131,7 +131,8 @@ def test_what_is_named_without_being_run_is_there(block: Block, recordings: Path
             module = ROOT / words[1].replace(".", "/")
             assert module.with_suffix(".py").exists() or (module / "__main__.py").exists(), line
         else:
-            assert command in {"afkb", "cd", "git", "source", ".venv/bin/afkb"}, line
+            others = {"cd", "dask", "git", "oxigraph", "source"}
+            assert command in {"afkb", ".venv/bin/afkb"} | others, line
 
 
 @pytest.mark.parametrize("document", RUN_BY_THEIR_OWN_TESTS)

@@ -44,8 +44,12 @@ class Job:
     @classmethod
     def from_json(cls, told: dict[str, Any]) -> Job:
         """The job that another process told of."""
-        asked = {k: tuple(v) if isinstance(v, list) else v for k, v in told["settings"].items()}
-        settings = Settings(**asked | {"out": Path(asked["out"])})
+        asked: dict[str, Any] = {
+            name: tuple(value) if isinstance(value, list) else value
+            for name, value in told["settings"].items()
+        }
+        asked["out"] = Path(asked["out"])
+        settings = Settings(**asked)
         return cls(told["name"], settings, tuple(Path(file) for file in told["ontology"]))
 
 
