@@ -1,0 +1,1 @@
+"""What a map weighs in each format, and how fast it is read, beside spark-dsg."""

@@ -1,0 +1,26 @@
+"""What weighs exports counts what is there."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from pathlib import Path
+
+from afkb.store import write_map
+from afkb_mapping.exporting.export import export_map
+from afkb_nav2.exporter import Nav2Exporter
+from bench.exports import formats, peers
+from store_samples import Names, sample_map
+
+
+def test_formats_and_peers_are_weighed_and_told(tmp_path: Path) -> None:
+    folder = write_map(tmp_path / "home", sample_map(), {}, [Nav2Exporter()], Names())
+    args = Namespace(maps=[folder], repeats=1)
+    weighed = formats.run(args)["home"]
+    (graph,) = export_map(folder, "graphml", tmp_path / "x.graphml")
+    assert weighed["nodes"] == 10 and weighed["graphml"]["bytes"] == graph.stat().st_size
+    assert weighed["nav2"]["read"]["median_ms"] > 0
+    beside = peers.run(args)["home"]
+    assert beside["nodes in both"] == 8
+    assert beside["map.json"]["bytes"] == (folder / "map.json").stat().st_size
+    lines = [*formats.table({"home": weighed}), *peers.table({"home": beside})]
+    assert sum("graphml" in line for line in lines) == 1 and len(lines) > 15
