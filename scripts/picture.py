@@ -17,7 +17,7 @@ SVG = "http://www.w3.org/2000/svg"
 
 def picture(report: str, left_out: set[str]) -> str:
     """The plan of a report.html as a standalone SVG with its styles, without tooltips."""
-    found = re.search(r'<svg class="plan".*?</svg>', report, re.DOTALL)
+    found = re.search(r'<svg class="plan.*?</svg>', report, re.DOTALL)
     style = re.search(r"<style>(.*?)</style>", report, re.DOTALL)
     if not found or not style:
         raise SystemExit("error: no plan in that report; is it one that `afkb map` wrote?")

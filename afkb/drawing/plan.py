@@ -42,8 +42,9 @@ def plan(topological_map: TopologicalMap) -> str:
     groups = "\n".join(d.group(name, drawn) for name, drawn in layers.items())
     corner = f"{d.number(west)} {d.number(-north)}"
     view = f"{corner} {d.number(east - west)} {d.number(north - south)}"
+    size = d.number(1.6 * radius)
     return (
-        f'<svg class="plan" viewBox="{view}" font-size="{d.number(1.6 * radius)}" role="img" '
+        f'<svg class="plan hide-edges hide-ids" viewBox="{view}" font-size="{size}" role="img" '
         f'aria-label="Plan of the map">\n{groups}\n{_scale_bar(west, south, extent)}\n</svg>'
     )
 

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from afkb.flow import OccupancyGrid, RobotPlace
+from afkb.store.stored_grid import StoredGrid
 from afkb_mapping.routes.drivable import drivable
 from afkb_mapping.routes.grid_paths import GridPaths
 from afkb_mapping.routes.standing_points import SNAP_M
-from afkb_mapping.routes.stored_grid import StoredGrid
 from afkb_mapping.routes.straight import length_of
 
 LEAST_RADIUS_M = 0.15

@@ -10,11 +10,11 @@ from afkb.errors import MapError, RouteError
 from afkb.finding import Node, RoomNode, Surroundings
 from afkb.flow import OccupancyGrid
 from afkb.knowledge import AfNet
+from afkb.store.stored_grid import StoredGrid, read_grid
 from afkb_mapping.routes.ends import Kind, end_of
 from afkb_mapping.routes.planner import Planner
 from afkb_mapping.routes.route_map import MappedRoom, RouteMap, Spot, Thing
 from afkb_mapping.routes.search import search
-from afkb_mapping.routes.stored_grid import StoredGrid, read_grid
 from afkb_mapping.routes.straight import cost_of, shortened
 
 CELL_M = 0.05

@@ -35,8 +35,8 @@ from afkb.store.reading import read_graph
 from afkb.store.scene import scene_triples
 from afkb.store.scribe import AFN
 from afkb.store.stored import read_scene
+from afkb.store.stored_map import read_map
 from afkb.store.turtle import to_turtle
-from afkb_mapping.stored_map import read_map
 from afkb_nav2.exporter import Nav2Exporter
 from store_samples import Names, sample_map
 

@@ -1,6 +1,7 @@
 // The plan on a page: which element stands for which node, what is chosen, what is lit up.
 
 const MARKS = ".node, .place, .room, .doorway, .bound";
+const LIT = `${MARKS}, .outline, .way`;
 
 export class Board extends EventTarget {
   // section: the page's .map with the SVG in it; drawing: { nodes, time } of the map.
@@ -48,15 +49,27 @@ export class Board extends EventTarget {
     this.say(this.chosen ? `${this.chosen}: ${this.told(this.chosen)}` : "");
   }
 
-  // Lights nodes up and dims the rest; none: everything as usual.
+  // Lights nodes up, above all else that is dimmed; none: everything as usual.
   light(ids) {
-    for (const drawn of this.svg.querySelectorAll(".lit")) drawn.classList.remove("lit");
     const known = [...new Set(ids)].filter((id) => this.elements.has(id));
-    for (const id of known) {
-      for (const drawn of this.elements.get(id)) drawn.classList.add("lit");
-    }
+    const marks = known.flatMap((id) => this.elements.get(id).filter((d) => d.matches(LIT)));
+    this.lights ??= this.#layer();
+    this.lights.replaceChildren(...marks.map((drawn) => {
+      const copy = drawn.cloneNode();
+      for (const name of ["data-id", "role", "tabindex", "aria-label"]) copy.removeAttribute(name);
+      copy.classList.add("lit");
+      return copy;
+    }));
     this.svg.classList.toggle("dimmed", known.length > 0);
     return known.length;
+  }
+
+  #layer() {
+    const layer = document.createElementNS(this.svg.namespaceURI, "g");
+    layer.setAttribute("class", "lights things");
+    layer.setAttribute("aria-hidden", "true");
+    this.svg.append(layer);
+    return layer;
   }
 
   // Told to who hears the page.

@@ -92,12 +92,13 @@ export function existing(facts, stamp) {
   return steps.length ? steps[0].before ?? steps[0].after : facts.existence ?? 1;
 }
 
+// What does not change from one moment to the next is left alone: most does not.
 function draw(part, p, nodes, stamp, now) {
   const ends = part.dataset.ends?.split(" ") || [];
-  const there = now || ends.every((id) => existing(nodes[id], stamp) > 0);
-  part.classList.toggle("not-yet", !there || p === 0);
-  if (now) part.style.removeProperty("--then");
-  else part.style.setProperty("--then", FAINTEST + (1 - FAINTEST) * p);
+  const there = now || (p > 0 && ends.every((id) => existing(nodes[id], stamp) > 0));
+  const faint = now || p > 0.99 ? "" : (FAINTEST + (1 - FAINTEST) * p).toFixed(2);
+  if (part.classList.contains("not-yet") === there) part.classList.toggle("not-yet", !there);
+  if (part.style.opacity !== faint) part.style.opacity = faint;
 }
 
 // What happened, in order: things seen and predicted first, and what came of predictions.

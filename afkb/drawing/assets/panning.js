@@ -5,22 +5,29 @@ const MOST_TIMES_WHOLE = 4;
 const CLICK_WITHIN_PX = 4;
 const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
+// While the plan is moved it is only shifted and stretched as a picture, which costs nothing
+// however much is on it; when it has stood still so long it is drawn sharp again.
+const SHARP_AFTER_MS = 140;
+
 export class Panning {
   // wheel: "always" zooms by the wheel, "ctrl" leaves the plain wheel to the page.
   constructor(board, wheel) {
     this.svg = board.svg;
+    this.frame = board.section.querySelector(".canvas");
+    this.sheet = board.section.querySelector(".sheet");
     this.whole = this.svg.getAttribute("viewBox").split(" ").map(Number);
     this.view = [...this.whole];
+    this.drawn = [...this.whole];
     this.fingers = new Map();
     this.svg.setAttribute("tabindex", "0");
-    this.svg.classList.add(wheel === "always" ? "takes-touch" : "leaves-touch");
-    this.svg.addEventListener("wheel", (event) => this.#turned(event, wheel), { passive: false });
-    this.svg.addEventListener("dblclick", (event) => {
-      if (!board.nodeAt(event.target)) this.showWhole();
+    this.frame.classList.add(wheel === "always" ? "takes-touch" : "leaves-touch");
+    this.frame.addEventListener("wheel", (event) => this.#turned(event, wheel), { passive: false });
+    this.frame.addEventListener("dblclick", (event) => {
+      if (!board.nodeAt(event.target) && !event.target.closest("button")) this.showWhole();
     });
     for (const [name, does] of [["pointerdown", "down"], ["pointermove", "move"],
       ["pointerup", "up"], ["pointercancel", "up"]]) {
-      this.svg.addEventListener(name, (event) => this[does](event));
+      this.frame.addEventListener(name, (event) => this[does](event));
     }
     this.svg.addEventListener("keydown", (event) => this.#pressed(event));
     const buttons = board.section.querySelector(".zoom");
@@ -33,10 +40,29 @@ export class Panning {
 
   show(view) {
     this.view = view;
-    this.svg.setAttribute("viewBox", view.map((v) => Math.round(v * 100) / 100).join(" "));
+    const [now, before] = [this.#placed(view), this.#placed(this.drawn)];
+    const [dx, dy] = [(before.x - now.x) / now.perPixel, (before.y - now.y) / now.perPixel];
+    const times = before.perPixel / now.perPixel;
+    this.sheet.style.transform = `translate(${dx}px, ${dy}px) scale(${times})`;
+    clearTimeout(this.waiting);
+    this.waiting = setTimeout(() => this.#sharpen(), SHARP_AFTER_MS);
+  }
+
+  #sharpen() {
+    this.drawn = this.view;
+    this.sheet.style.transform = "";
+    this.svg.setAttribute("viewBox", this.view.map((v) => Math.round(v * 100) / 100).join(" "));
     // Marks and names grow more slowly than the plan, so that what stands close comes apart.
-    this.svg.style.setProperty("--mark", Math.min(1, view[2] / this.whole[2]) ** 0.6);
-    this.svg.classList.toggle("zoomed", view[2] < this.whole[2]);
+    const share = Math.min(1, this.view[2] / this.whole[2]);
+    this.svg.style.setProperty("--mark", Math.round(1000 * share ** 0.6) / 1000);
+    this.svg.classList.toggle("zoomed", share < 1);
+  }
+
+  // The middle of a view, and drawing units per pixel: it is fitted into the frame, centred.
+  #placed([x, y, width, height]) {
+    const { clientWidth, clientHeight } = this.frame;
+    const perPixel = Math.max(width / clientWidth, height / clientHeight);
+    return { x: x + width / 2, y: y + height / 2, perPixel };
   }
 
   showWhole() {
@@ -65,8 +91,9 @@ export class Panning {
   }
 
   inPlan(clientX, clientY) {
-    const at = new DOMPoint(clientX, clientY).matrixTransform(this.svg.getScreenCTM().inverse());
-    return [at.x, at.y];
+    const { left, top, width, height } = this.frame.getBoundingClientRect();
+    const { x, y, perPixel } = this.#placed(this.view);
+    return [x + (clientX - left - width / 2) * perPixel, y + (clientY - top - height / 2) * perPixel];
   }
 
   #turned(event, wheel) {
@@ -77,7 +104,7 @@ export class Panning {
   }
 
   down(event) {
-    if (event.pointerType === "mouse" && event.button !== 0) return;
+    if ((event.pointerType === "mouse" && event.button !== 0) || event.target.closest("button")) return;
     this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
     this.start = [event.clientX, event.clientY];
   }
@@ -87,9 +114,9 @@ export class Panning {
     if (!before) return;
     const far = Math.hypot(event.clientX - this.start[0], event.clientY - this.start[1]);
     if (far < CLICK_WITHIN_PX && this.fingers.size === 1) return;
-    this.svg.setPointerCapture(event.pointerId);
+    this.frame.setPointerCapture(event.pointerId);
     const others = [...this.fingers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
-    const perPixel = 1 / this.svg.getScreenCTM().a;
+    const { perPixel } = this.#placed(this.view);
     const now = [event.clientX, event.clientY];
     const share = 1 / this.fingers.size;
     this.pan((before[0] - now[0]) * perPixel * share, (before[1] - now[1]) * perPixel * share);

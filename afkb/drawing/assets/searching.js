@@ -50,7 +50,7 @@ export function letSearch(board) {
     list.hidden = false;
     at = -1;
     input.setAttribute("aria-expanded", "true");
-    board.light(hits);
+    board.light(hits.slice(0, MOST));
     board.say(`${hits.length} found`);
   };
 

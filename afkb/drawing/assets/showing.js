@@ -3,6 +3,7 @@
 import { Board } from "./board.js";
 import { letChoose } from "./choosing.js";
 import { showDetails } from "./details.js";
+import { letHide } from "./layers.js";
 import { drawLinks } from "./links.js";
 import { letTimePass } from "./moments.js";
 import { Panning } from "./panning.js";
@@ -11,6 +12,7 @@ import { letSearch } from "./searching.js";
 export function showPlan(section, drawing, { wheel, more = null }) {
   const board = new Board(section, drawing);
   const panning = new Panning(board, wheel);
+  letHide(board);
   const { back } = letChoose(board, panning);
   showDetails(board, { more, back });
   drawLinks(board);

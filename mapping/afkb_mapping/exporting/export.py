@@ -12,8 +12,8 @@ from afkb.plugins.host import PluginHost
 from afkb.plugins.protocols import AdjustableExporter, Exporter, SceneExporter
 from afkb.store import StoredMap, load
 from afkb.store.stored import SCENE_FILE
+from afkb.store.stored_map import read_map, run_of
 from afkb_mapping.exporting.delivery import deliver
-from afkb_mapping.stored_map import read_map, run_of
 
 
 @dataclass(frozen=True, slots=True)

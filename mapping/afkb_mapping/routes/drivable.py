@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from afkb_mapping.routes.stored_grid import StoredGrid
+from afkb.store.stored_grid import StoredGrid
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from afkb.finding import Surroundings
 from afkb.store import StoredMap, load
+from afkb.store.stored_grid import StoredGrid, read_grid
 from afkb.store.vocabulary import local_name
-from afkb_mapping.routes.stored_grid import StoredGrid, read_grid
 
 Array = NDArray[np.float64]
 
