@@ -1,0 +1,1 @@
+"""What `afkb serve` bears, and how quickly it answers."""
