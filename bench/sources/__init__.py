@@ -1,0 +1,1 @@
+"""How recordings are read: how fast beside others, and whether formats agree."""
