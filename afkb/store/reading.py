@@ -8,6 +8,7 @@ files beside it, loops that were considered, and categories beyond the likeliest
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,6 +51,7 @@ def read_graph(stored: StoredMap) -> SceneGraph:
     """The map's nodes, rooms and edges; `MapError` where a statement can't be what afkb wrote."""
     facts = Facts(stored.store)
     try:
+        past = tuple(map(past_of, facts.all("PastPrediction")))
         return SceneGraph(
             places=tuple(map(_place, facts.all(NodeKind.ROBOT_PLACE.value))),
             entities=tuple(entity_of(t, k) for k in THINGS for t in facts.all(k.value)),
@@ -57,8 +59,8 @@ def read_graph(stored: StoredMap) -> SceneGraph:
             doorways=tuple(map(_doorway, facts.all("Doorway"))),
             rooms=tuple(map(_room, facts.all("Room"))),
             edges=tuple(map(_edge, facts.all("Edge"))),
-            closures=tuple(map(_closure, facts.all("LoopClosure"))),
-            past_predictions=tuple(map(past_of, facts.all("PastPrediction"))),
+            closures=tuple(_closure(told, past) for told in facts.all("LoopClosure")),
+            past_predictions=past,
         )
     except (ValueError, IndexError) as error:
         raise MapError(
@@ -148,13 +150,16 @@ def _edge(told: Thing) -> Edge:
     )
 
 
-def _closure(told: Thing) -> Closure:
+def _closure(told: Thing, past: Sequence[PastPrediction]) -> Closure:
+    """A prediction that was seen; when it was made first, its life tells, which ended then."""
+    entity, stamp = told.name("afn:confirms") or "", told.number("afn:lastSeen")
+    lives = (p.first_seen for p in past if p.seen_as == entity and p.ended == stamp)
     return Closure(
-        entity=told.name("afn:confirms") or "",
+        entity=entity,
         predicted_as=NodeKind(told.name("afn:predictedAs") or ""),
         predicted_probability=told.number("afn:probability"),
         displacement_m=told.number("afn:displacement"),
         place=told.name("afn:seenFrom") or "",
-        stamp=told.number("afn:lastSeen"),
-        predicted_stamp=math.nan,
+        stamp=stamp,
+        predicted_stamp=next(lives, math.nan),
     )

@@ -44,7 +44,7 @@ class PaperExporter:
         return [graph, *write_grid(topological_map.grid, folder)]
 
 
-def _write(graph: nx.Graph, path: Path) -> Path:
+def _write(graph: nx.Graph[str], path: Path) -> Path:
     text = "\n".join(nx.generate_graphml(graph, named_key_ids=True))
     path.write_text(text + "\n", encoding="utf-8")
     return path

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import networkx as nx
 
-from afkb.flow import Edge, EdgeKind, TopologicalMap
+from afkb.flow import Bound, Edge, EdgeKind, Entity, RobotPlace, TopologicalMap
 from afkb_mapping.exporting.describing import (
     Flat,
     flat_bound,
@@ -15,14 +15,14 @@ from afkb_mapping.exporting.describing import (
 )
 
 
-def map_graph(whole: TopologicalMap) -> nx.MultiDiGraph:
+def map_graph(whole: TopologicalMap) -> nx.MultiDiGraph[str]:
     """All nodes by id, and all that relates them; attributes are in m, rad and s.
 
     Edges have a `relation`: `path`, `obstacle` or `bound` with the distance and bearing from source
     to target, and between things and rooms `supported_by`, `part_of`, `in_room`, `predicted_from`,
     `seen_from`, `connects` (a doorway its rooms) and `connected_to` (rooms).
     """
-    graph = nx.MultiDiGraph(frame="map, m and rad, z up")
+    graph: nx.MultiDiGraph[str] = nx.MultiDiGraph(frame="map, m and rad, z up")
     for place in whole.places:
         graph.add_node(place.id, **flat_place(place))
     for entity in whole.entities:
@@ -41,9 +41,9 @@ def map_graph(whole: TopologicalMap) -> nx.MultiDiGraph:
     return graph
 
 
-def place_graph(whole: TopologicalMap) -> nx.Graph:
+def place_graph(whole: TopologicalMap) -> nx.Graph[str]:
     """The robot's places and the ways between them, each with its linkage angle (paper §II.E)."""
-    graph = nx.Graph(frame="map, m and rad, z up")
+    graph: nx.Graph[str] = nx.Graph(frame="map, m and rad, z up")
     for place in whole.places:
         graph.add_node(place.id, **flat_place(place))
     for edge in whole.edges:
@@ -67,8 +67,12 @@ def _measured(edge: Edge) -> Flat:
 def _relations(whole: TopologicalMap) -> list[tuple[str, str, str]]:
     """What relates nodes besides measured edges: (source, relation, target)."""
     found: list[tuple[str, str, str]] = []
-    for node in (*whole.places, *whole.entities, *whole.bounds):
-        found += [(node.id, "in_room", node.room)] if node.room else []
+    nodes: tuple[RobotPlace | Entity | Bound, ...] = (
+        *whole.places,
+        *whole.entities,
+        *whole.bounds,
+    )
+    found += [(node.id, "in_room", node.room) for node in nodes if node.room]
     for entity in whole.entities:
         one = {"supported_by": entity.supported_by, "part_of": entity.part_of}
         found += [(entity.id, name, other) for name, other in one.items() if other]

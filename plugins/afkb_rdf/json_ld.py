@@ -27,7 +27,8 @@ _NATIVE = {_XSD + "string", _XSD + "boolean", _XSD + "integer"}
 def to_json_ld(triples: Iterable[Triple]) -> str:
     """The text of a JSON-LD document of named things, the same for the same triples."""
     ordered = canonical(triples)
-    prefixes = PREFIXES | _scene_prefix(ordered)
+    bases = PREFIXES | _scene_prefix(ordered)
+    prefixes = {base: prefix for prefix, base in bases.items()}
     kinds = _kinds_of_properties(ordered)
     terms = _terms(kinds)
     things: dict[str, Json] = {}
@@ -37,7 +38,7 @@ def to_json_ld(triples: Iterable[Triple]) -> str:
             triple.subject.value, {"@id": _compact(triple.subject.value, prefixes)}
         )
         _state(thing, triple, kinds[triple.predicate.value], terms, prefixes)
-    context: Json = dict(prefixes)
+    context: Json = dict(bases)
     for iri, term in sorted(terms.items(), key=lambda item: item[1]):
         context[term] = _definition(iri, kinds[iri], prefixes)
     lines = ",\n".join(json.dumps(t, ensure_ascii=False) for t in things.values())
@@ -100,7 +101,8 @@ def _state(
     predicate = triple.predicate.value
     if predicate == _TYPE:
         assert isinstance(triple.object, NamedNode)
-        key, value = "@type", _compact(triple.object.value, prefixes)
+        key = "@type"
+        value: object = _compact(triple.object.value, prefixes)
     else:
         key = terms[predicate]
         value = _value(triple.object, kind, prefixes)
@@ -136,8 +138,7 @@ def _plain(text: str, datatype: str) -> object:
 
 
 def _compact(iri: str, prefixes: dict[str, str]) -> str:
-    """A prefixed name where one of the prefixes fits, else the IRI."""
-    fitting = [(prefix, base) for prefix, base in prefixes.items() if iri.startswith(base)]
-    prefix, base = max(fitting, key=lambda item: len(item[1]), default=("", ""))
-    local = iri[len(base) :]
-    return f"{prefix}:{local}" if prefix and not local.startswith("//") else iri
+    """A prefixed name where there is a prefix for its namespace, else the IRI."""
+    end = (iri.rfind("#") if "#" in iri else iri.rfind("/")) + 1
+    prefix = prefixes.get(iri[:end])
+    return f"{prefix}:{iri[end:]}" if prefix else iri

@@ -61,12 +61,10 @@ def scene_graph(whole: TopologicalMap) -> Json:
 
 def _symbols(whole: TopologicalMap) -> dict[str, int]:
     """Ids of the map to spark_dsg's, which are a letter and a number."""
-    lists = (("O", whole.entities), ("p", whole.places), ("R", whole.rooms))
-    return {
-        node.id: symbol(letter, number)
-        for letter, nodes in lists
-        for number, node in enumerate(nodes)
-    }
+    ids: dict[str, int] = {}
+    ids |= {e.id: symbol("O", number) for number, e in enumerate(whole.entities)}
+    ids |= {p.id: symbol("p", number) for number, p in enumerate(whole.places)}
+    return ids | {r.id: symbol("R", number) for number, r in enumerate(whole.rooms)}
 
 
 def _edges(whole: TopologicalMap, ids: dict[str, int]) -> list[Json]:
@@ -97,11 +95,11 @@ def _related(whole: TopologicalMap) -> Iterator[tuple[str, str, float | None, Js
         parent = _parent(entity, places)
         if parent is not None:
             yield parent.id, entity.id, None, {}
-        for name, other in (("supported_by", entity.supported_by), ("part_of", entity.part_of)):
-            if other is not None:
-                yield entity.id, other, None, {"relation": name}
-        for other in entity.predicted_from:
-            yield entity.id, other, None, {"relation": "predicted_from"}
+        for name, holder in (("supported_by", entity.supported_by), ("part_of", entity.part_of)):
+            if holder is not None:
+                yield entity.id, holder, None, {"relation": name}
+        for anchor in entity.predicted_from:
+            yield entity.id, anchor, None, {"relation": "predicted_from"}
 
 
 def _parent(entity: Entity, places: dict[str, RobotPlace]) -> RobotPlace | None:

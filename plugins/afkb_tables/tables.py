@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from afkb.flow import Edge, TopologicalMap
+from afkb.flow import Edge, Entity, PastPrediction, TopologicalMap
 from afkb.store.scribe import polygon_wkt, ranked
 from afkb_mapping.exporting.describing import (
     flat_bound,
@@ -121,8 +121,10 @@ _THING = (
     "outline",
 )
 _ROOM = ("id", "x", "y", "area", "category", "category_probability", "visited", "outline")
-_BOUND = ("id", "x", "y", "length", "existence", "observations", "first_seen", "last_seen")
-_BOUND = (*_BOUND, "room", "outline")
+_BOUND = (
+    *("id", "x", "y", "length", "existence", "observations", "first_seen", "last_seen"),
+    *("room", "outline"),
+)
 _DOORWAY = ("id", "x", "y", "yaw", "width", "existence", "rooms")
 _EDGE = ("id", "kind", "source", "target", "distance", "bearing", "linkage_angle")
 _BELIEF = ("node", "about", "name", "probability")
@@ -159,7 +161,8 @@ def _beliefs(whole: TopologicalMap) -> Iterator[dict[str, object]]:
 
 def _history(whole: TopologicalMap) -> Iterator[dict[str, object]]:
     """The steps of what is there, and of predictions that came to an end."""
-    for node in (*whole.entities, *whole.past_predictions):
+    nodes: tuple[Entity | PastPrediction, ...] = (*whole.entities, *whole.past_predictions)
+    for node in nodes:
         for number, change in enumerate(node.history, start=1):
             yield {
                 "node": node.id,

@@ -11,7 +11,9 @@ from pathlib import Path
 import networkx as nx
 import numpy as np
 import pytest
+from typer.testing import CliRunner, Result
 
+from afkb.cli.app import build_cli
 from afkb.errors import MapError, PluginError
 from afkb.flow import NodeKind
 from afkb.plugins.host import PluginHost
@@ -257,6 +259,24 @@ def test_a_file_goes_into_a_folder_that_is_there_under_the_maps_name(
     assert exported(folder, tmp_path, "spark-dsg") == [tmp_path / "home.dsg.json"]
     monkeypatch.chdir(tmp_path)
     assert export_map(folder, "csv", host=HOST)[0] == tmp_path / "home-csv" / "datapackage.json"
+
+
+def command(*arguments: object) -> Result:
+    return CliRunner().invoke(build_cli(HOST), ["export", *map(str, arguments)])
+
+
+def test_the_command_writes_lists_and_refuses(folder: Path, tmp_path: Path) -> None:
+    done = command(folder, "--to", "csv", "--out", tmp_path / "t", "--json")
+    told = json.loads(done.stdout)
+    assert done.exit_code == 0 and told["format"] == "csv"
+    assert all(Path(f["file"]).stat().st_size == f["bytes"] for f in told["files"])
+    listed = json.loads(command("--list", "--json").stdout)
+    assert [f["name"] for f in listed] == sorted(f["name"] for f in listed)
+    assert command(folder).exit_code == 2
+    for wrong in (("--to", "kml"), ("--to", "csv", "--out", tmp_path / "t"), ("--to", "x", "a=b")):
+        refused = command(folder, *wrong)
+        assert refused.exit_code in (1, 2) and "Traceback" not in refused.output
+    assert refused.exit_code == 2
 
 
 class Failing:
