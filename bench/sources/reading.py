@@ -5,7 +5,8 @@
 What others read is the depth image alone, without a pose and without asking whether the file is
 whole: OpenCV's `imread`, Open3D's `read_image`, rosbags' reader with OpenCV's decoder. Each round
 reads the same frames with each reader in turn; depth must be equal. The first round warms the disk
-cache and is not counted. Seconds are of CPU. Trajectories: lines a second, beside Open3D's reader of the same file.
+cache and is not counted. Seconds are of CPU. Trajectories: lines a second, beside Open3D's reader
+of the same file.
 """
 
 from __future__ import annotations

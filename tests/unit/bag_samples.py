@@ -94,16 +94,19 @@ class BagWriter:
         )  # fmt: skip
         self.put(f"{DEPTH}/compressedDepth", message, t)
 
-    def camera_info(self, t: float, f: float = 40.0, topic: str = INFO) -> None:
-        K = np.array([f, 0, WIDTH / 2, 0, f, HEIGHT / 2, 0, 0, 1], np.float64)
-        P = np.array([f, 0, WIDTH / 2, 0, 0, f, HEIGHT / 2, 0, 0, 0, 1, 0], np.float64)
+    def camera_info(
+        self, t: float, f: float = 40.0, topic: str = INFO, size: tuple[int, int] = (WIDTH, HEIGHT)
+    ) -> None:
+        width, height = size
+        K = np.array([f, 0, width / 2, 0, f, height / 2, 0, 0, 1], np.float64)
+        P = np.array([f, 0, width / 2, 0, 0, f, height / 2, 0, 0, 0, 1, 0], np.float64)
         D, R = np.zeros(5), np.eye(3).ravel()
         names = "DKRP" if self.ros1 else "dkrp"
         region = self.new("sensor_msgs/msg/RegionOfInterest", x_offset=0, y_offset=0, height=0,
                           width=0, do_rectify=False)  # fmt: skip
         message = self.new(
-            "sensor_msgs/msg/CameraInfo", header=self.header(t, CAMERA_FRAME), height=HEIGHT,
-            width=WIDTH, distortion_model="plumb_bob", binning_x=0, binning_y=0, roi=region,
+            "sensor_msgs/msg/CameraInfo", header=self.header(t, CAMERA_FRAME), height=height,
+            width=width, distortion_model="plumb_bob", binning_x=0, binning_y=0, roi=region,
             **dict(zip(names, (D, K, R, P), strict=True)),
         )  # fmt: skip
         self.put(topic, message, t)
