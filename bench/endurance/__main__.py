@@ -4,9 +4,9 @@
     python -m bench.endurance PART [--times N] [...]    one part
 
 Each part is killed 25 times unless `--times` says otherwise. Half of the moments are spread over
-the whole run, half over the time in which it writes its folder. Everything is made in a scratch
-folder, of the bundled home; no data are needed. `uploads` needs the Oxigraph server
-(`pip install oxigraph`).
+the whole run, a quarter over the writing of its files, a quarter over putting them in place.
+Everything is made in a scratch folder, of the bundled home; no data are needed. `uploads` needs the
+Oxigraph server (`pip install oxigraph`).
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 
 import numpy as np
@@ -37,12 +38,25 @@ def run_to_end(*arguments: str | Path) -> float:
     return time.monotonic() - begun
 
 
+class Phase(StrEnum):
+    """What a run is seen to begin: itself, the files of its map, or to put them in place."""
+
+    START = "start"
+    WRITING = "writing"
+    PLACING = "placing"
+
+
+PLACING_S = 0.3
+"""How long after a map's last file is begun it may take to be synced and put in place, s."""
+_LAST_FILE = "run.json"
+
+
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Seconds after the start, or after it was first seen to write: a busy machine shifts that."""
+    """Seconds after a phase was seen to begin: a busy machine shifts when that is."""
 
     after_s: float
-    from_writing: bool = False
+    phase: Phase = Phase.START
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,37 +67,46 @@ class Timing:
     writes_from_s: float
 
     def moments(self, times: int, rng: np.random.Generator) -> list[Moment]:
-        """When to kill it: half of the moments anywhere, half while it writes or just after."""
-        writing = 1.1 * (self.whole_s - self.writes_from_s)
-        half = times // 2
-        anywhere = [Moment(float(t)) for t in rng.uniform(0.0, self.whole_s, times - half)]
-        return anywhere + [Moment(float(t), True) for t in rng.uniform(0.0, writing, half)]
+        """When to kill it: half of the moments anywhere, a quarter in each of the last phases."""
+        lasts = {
+            Phase.START: (times - 2 * (times // 4), self.whole_s),
+            Phase.WRITING: (times // 4, self.whole_s - self.writes_from_s),
+            Phase.PLACING: (times // 4, PLACING_S),
+        }
+        return [
+            Moment(float(after_s), phase)
+            for phase, (n, seconds) in lasts.items()
+            for after_s in rng.uniform(0.0, seconds, n)
+        ]
 
 
 def timed(command: Sequence[str], folders: Sequence[Path]) -> Timing:
-    """A run to its end, watched: it writes from when a scratch folder beside a map holds a file."""
+    """A run to its end, watched."""
     begun = time.monotonic()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _until_it_writes(process, folders)
+    _wait_for(Phase.WRITING, process, folders)
     writes_from = time.monotonic() - begun
     if process.wait():
         raise SystemExit(f"{' '.join(command)}: failed without being killed")
     return Timing(time.monotonic() - begun, writes_from)
 
 
-def _until_it_writes(process: subprocess.Popen[bytes], folders: Sequence[Path]) -> None:
-    while process.poll() is None and not _is_writing(folders):
+def _wait_for(phase: Phase, process: subprocess.Popen[bytes], folders: Sequence[Path]) -> None:
+    """Wait until any of the folders' maps is in that phase, or the process has ended."""
+    while process.poll() is None and phase not in _phases(folders):
         time.sleep(0.002)
 
 
-def _is_writing(folders: Sequence[Path]) -> bool:
-    """Whether a scratch folder holds a file; an empty one is a look whether it can be written."""
+def _phases(folders: Sequence[Path]) -> set[Phase]:
+    """The phases that can be seen: an empty scratch folder is a look whether one can write."""
+    seen = {Phase.START}
     for folder in folders:
         for scratch in folder.parent.glob(f".{folder.name}.*.partial"):
             with suppress(FileNotFoundError):
-                if any(scratch.iterdir()):
-                    return True
-    return False
+                names = {entry.name for entry in scratch.iterdir()}
+                seen |= {Phase.WRITING} if names else set()
+                seen |= {Phase.PLACING} if _LAST_FILE in names else set()
+    return seen
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,8 +132,7 @@ def kill_at(command: Sequence[str], moment: Moment, folders: Sequence[Path]) -> 
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     )
-    if moment.from_writing:
-        _until_it_writes(process, folders)
+    _wait_for(moment.phase, process, folders)
     with suppress(subprocess.TimeoutExpired):
         process.wait(moment.after_s)
     started = descendants(process.pid)
@@ -119,7 +141,7 @@ def kill_at(command: Sequence[str], moment: Moment, folders: Sequence[Path]) -> 
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     gone_after = _gone(started)
-    return Killed(moment, had_ended, _is_writing(folders), gone_after)
+    return Killed(moment, had_ended, Phase.WRITING in _phases(folders), gone_after)
 
 
 def descendants(process: int) -> set[int]:

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from afkb.errors import EndpointError, MapError
-from afkb.fleet import PushState, Server, kept_maps, map_graph, named, push, remove
+from afkb.fleet import Keeper, PushState, Server, kept_maps, map_graph, named, push, remove
 from afkb.fleet.pushing import ATTEMPTS
 from afkb.fleet.statements import digest_of, portions, statements_of
 from afkb.store import load, write_map
@@ -212,6 +212,25 @@ def test_a_busy_server_is_asked_again_with_credentials_that_nothing_shows(odd_se
     )
     assert asked[0] == "Basic bWU6c0BjcnQ="
     assert "crt" not in repr(found) + str(told) and "bWU6" not in repr(found)
+
+
+def test_a_server_that_is_away_while_mapping_gets_the_map_afterwards(tmp_path, maps):
+    with oxigraph_server(tmp_path / "data") as process:
+        process.kill()
+        told = []
+        keeper = Keeper.of(process.url, "north", told.append)
+        assert "nobody listens there" in told[0]
+        keeper.patience_s = 0.1
+        later = f"afkb store push {maps[0].folder} --prefix north --url {process.url}"
+        with pytest.raises(EndpointError, match=f"send it later: {later}"):
+            keeper.keep(maps[0].folder)
+        process.start()
+        assert keeper.keep(maps[0].folder).graph == "urn:afkb:map:north/kitchen"
+
+
+def test_what_refuses_is_told_before_hours_of_mapping(odd_server):
+    with pytest.raises(EndpointError, match="401"):
+        Keeper.of(f"{odd_server[0]}/401", "", print)
 
 
 def test_credentials_come_from_the_url_or_the_environment():
