@@ -27,6 +27,7 @@ from afkb.flow.topological_map import (
     Room,
     TopologicalMap,
 )
+from afkb.flow.truth import TrueThing, TrueView, Truth
 
 __all__ = [
     "Bound",
@@ -56,5 +57,8 @@ __all__ = [
     "Sighting",
     "SkippedFrame",
     "TopologicalMap",
+    "TrueThing",
+    "TrueView",
+    "Truth",
     "View",
 ]

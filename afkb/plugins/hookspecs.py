@@ -11,6 +11,7 @@ from afkb.plugins import hookspec
 if TYPE_CHECKING:
     import typer
 
+    from afkb.flow import Truth
     from afkb.knowledge import AfNet
     from afkb.plugins.protocols import (
         Detector,
@@ -26,6 +27,11 @@ if TYPE_CHECKING:
 @hookspec(firstresult=True)
 def afkb_open_source(uri: str, options: Mapping[str, str], knowledge_base: AfNet) -> Source | None:
     """Open a recording if it is of a kind this plugin knows, else return None."""
+
+
+@hookspec(firstresult=True)
+def afkb_truth(uri: str, knowledge_base: AfNet) -> Truth | None:
+    """Return what is so where a recording was made, to judge its map by, or None if unknown."""
 
 
 @hookspec

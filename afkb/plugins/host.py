@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
@@ -25,6 +25,9 @@ from afkb.plugins.protocols import (
     Source,
     Viewer,
 )
+
+if TYPE_CHECKING:  # Every command loads this; few of them need arrays.
+    from afkb.flow import Truth
 
 
 class _Named(Protocol):
@@ -126,6 +129,16 @@ class PluginHost:
                 "see `afkb plugins --hook afkb_open_source` and docs/your-own-data.md"
             )
         return source  # type: ignore[no-any-return]
+
+    def truth(self, uri: str) -> Truth | None:
+        """What is so where the recording at `uri` was made; None where no plugin knows it.
+
+        Maps are judged by it. Nothing that makes them asks for it.
+        """
+        found: Truth | None = self.manager.hook.afkb_truth(
+            uri=_as_path(uri), knowledge_base=self.knowledge_base
+        )
+        return found
 
     def detectors(self, names: Sequence[str] = ()) -> list[Detector]:
         """The named detectors, or all that run by default, in order of stage."""

@@ -1,0 +1,2 @@
+def sheet(title, uri, table, outcome, steps):
+    return ""
