@@ -12,26 +12,19 @@ alone) stands beside those of all room classifiers that are registered.
 from __future__ import annotations
 
 import argparse
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from afkb.figures import Names
-from afkb.flow import Room, TopologicalMap
-from afkb.ontology.bundled import bundled_ontology
+from afkb.flow import TopologicalMap
 from afkb.plugins.host import PluginHost
 from afkb_mapping.rooms.opinions import with_opinions
+from afkb_paper.rooms import AFFORDANCES, JudgedRoom, judged_rooms
+from afkb_paper.truth_file import truth_of
 from bench.detectors.data import Home
 from bench.inference.home_maps import add_arguments, home_maps
 from bench.inference.rebuilt import rebuilt
 
 __all__ = ["add_arguments", "run", "table"]
-
-AFFORDANCES = "affordances"
-ALSO_RIGHT = {"ChildsRoom": {"Bedroom"}}
-"""A child's room is a bedroom, by the definition that the ontology states."""
-MS = 1000
-"""Views of the map and of the truth are paired by their stamps, to a millisecond."""
 
 
 def run(args: argparse.Namespace) -> dict[str, Any]:
@@ -50,54 +43,36 @@ def _judged(found: TopologicalMap, home: Home, host: PluginHost) -> list[dict[st
 
 def room_rows(found: TopologicalMap, truth: Mapping[str, Any], home: str) -> list[dict[str, Any]]:
     """Per true room that the robot stood in: the mapped room of most of its views, and beliefs."""
-    names = Names.load(bundled_ontology().parent / "tables").rooms
-    at = {round(v["stamp"] * MS): v["room"] for v in truth["views"]}
-    stood: dict[str, Counter[str]] = {}
-    for row in found.trajectory:
-        if (name := at.get(round(row[0] * MS))) is not None:
-            stood.setdefault(name, Counter())[_room_at(found.rooms, row[4], row[8])] += 1
-    chosen = {name: rooms.most_common(1)[0][0] for name, rooms in stood.items()}
-    shared = Counter(chosen.values())
-    rooms = {room.id: room for room in found.rooms}
     return [
         {
             "home": home,
-            "room": name,
-            "category": names.find("homes", name.rstrip("0123456789_")),
-            "views": stood[name].total(),
-            "mapped": chosen[name],
-            "shared": shared[chosen[name]],
-            "area_m2": round(rooms[chosen[name]].area, 1),
-            **_told(rooms[chosen[name]], names.find("homes", name.rstrip("0123456789_")) or ""),
+            "room": room.name,
+            "category": room.category or None,
+            "views": room.views,
+            "mapped": room.mapped.id,
+            "shared": room.shared,
+            "area_m2": round(room.mapped.area, 1),
+            **_told(room),
         }
-        for name in sorted(stood)
+        for room in judged_rooms(found, truth_of(truth))
     ]
 
 
-def _told(room: Room, category: str) -> dict[str, Any]:
-    right = {category} | ALSO_RIGHT.get(category, set())
-    beliefs = {AFFORDANCES: room.belief, **room.other_beliefs}
-    second = room.second_purpose[0] if room.second_purpose else None
+def _told(room: JudgedRoom) -> dict[str, Any]:
+    second = room.mapped.second_purpose[0] if room.mapped.second_purpose else None
     return {
         "second": second,
-        "second_right": second in right,
+        "second_right": second in room.right,
         "beliefs": {
             by: {
-                "best": max(belief, key=lambda r: belief[r]),
+                "best": room.told(by),
                 "p_best": round(max(belief.values()), 3),
-                "p_true": round(sum(belief.get(r, 0.0) for r in right), 3),
-                "right": max(belief, key=lambda r: belief[r]) in right,
+                "p_true": round(sum(belief.get(r, 0.0) for r in room.right), 3),
+                "right": room.is_right(by),
             }
-            for by, belief in beliefs.items()
+            for by, belief in room.beliefs.items()
         },
     }
-
-
-def _room_at(rooms: Sequence[Room], x: float, y: float) -> str:
-    import shapely
-
-    point = shapely.Point(x, y)
-    return min(rooms, key=lambda r: shapely.Polygon(r.polygon_xy).buffer(0).distance(point)).id
 
 
 def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

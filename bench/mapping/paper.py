@@ -22,7 +22,6 @@ from afkb_mapping.demo_table import transient_per_place
 from afkb_mapping.run import make_map
 from afkb_mapping.run_record import Settings
 from afkb_simulation.reading import world_path
-from afkb_simulation.truth import load_truth
 from bench.mapping.deceived_picture import picture
 from bench.mapping.deceived_visits import (
     DEPTH,
@@ -56,7 +55,9 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch) / "map"
         found = make_map(host, Settings(uri=WORLD, out=folder)).topological_map
-        figures = compare(found, load_truth(WORLD))
+        truth = host.truth(WORLD)
+        assert truth is not None
+        figures = compare(found, truth)
         figures["transient nodes per place (paper: ~3)"] = round(transient_per_place(found), 1)
         if args.first and args.later:
             visits = _homes(host, args, Path(scratch))

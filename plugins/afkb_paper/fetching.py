@@ -14,8 +14,8 @@ from afkb_mapping.routes.ends import Kind, end_of
 from afkb_mapping.routes.planner import Planner
 from afkb_mapping.routes.route_map import RouteMap, Thing
 from afkb_mapping.routes.search import Search, SearchPlace, search
-from afkb_paper.passing import ROBOT_RADIUS_M
 from afkb_paper.judged import Judged
+from afkb_paper.passing import ROBOT_RADIUS_M
 
 Array = NDArray[np.float64]
 
@@ -52,11 +52,16 @@ def fetched(judged: Judged, folder: Path, kb: AfNet) -> Fetched | str:
         return str(error)
     for number, place in enumerate(found.places):
         if thing := _held(place, judged):
-            belief = known.rooms[place.room].belief if place.room in known.rooms else {}
-            room = max(belief, key=lambda name: belief[name]) if belief else place.room
+            room = _purpose(known, place.room)
             path = _until(found, number)
             return Fetched(number + 1, found.metres[number], room, thing, path)
     return Fetched(None, None, None, None, found.route.path)
+
+
+def _purpose(known: RouteMap, id_: str | None) -> str | None:
+    """What a room is most likely for; its id where nothing is believed of it."""
+    belief = known.rooms[id_].belief if id_ is not None and id_ in known.rooms else {}
+    return max(belief, key=lambda name: belief[name]) if belief else id_
 
 
 def _held(place: SearchPlace, judged: Judged) -> str | None:

@@ -94,7 +94,7 @@ def _past(
 
 def _moment(past: PastPrediction, judged: Judged, steps: Steps) -> float:
     """When the robot left the place from which it came to expect it, unless it was seen before."""
-    left = (m for m in moments(judged.found) if m >= past.first_seen)
+    left = (end for _, end in moments(judged.found) if end >= past.first_seen)
     return min(next(left), steps.before(past.ended))
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.errors import SourceError
-from afkb.flow import OrientedBox, TopologicalMap, TrueThing, Truth, TrueView
-from afkb_mapping.geometry import T_from_xy_yaw, inverse, yaw_of
+from afkb.flow import OrientedBox, TopologicalMap, TrueThing, TrueView, Truth
+from afkb_mapping.geometry import T_from_xy_yaw, inverse, wrap_angle, yaw_of
 
 Array = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ MS = 1000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Judged:
-    """A map with the truth of its recording; `T_map_true` (4, 4): of the truth's frame in the map's.
+    """A map with the truth of its recording, whose frame lies at `T_map_true` (4, 4) in the map's.
 
     The frames are laid on each other at the first view that both know, as there the map frame is
     fixed: what drifts later is the map's own error.
@@ -41,11 +41,13 @@ class Judged:
             return cls(found, truth, flat @ inverse(T_true_base))
         raise SourceError("no view of the map has a stamp of the truth: is it of this recording?")
 
-    def views(self) -> Iterator[tuple[TrueView, float]]:
-        """The true views that were mapped, each with how far off the robot was placed, m."""
+    def views(self) -> Iterator[tuple[TrueView, float, float]]:
+        """The true views that were mapped, and how far off the robot was placed, m and rad."""
+        turned = yaw_of(self.T_map_true)
         for row, view in _pairs(self.found, self.truth):
             x, y = self.xy(view.x, view.y)
-            yield view, math.hypot(row[4] - x, row[8] - y)
+            off = yaw_of(row[1:].reshape(4, 4)) - (view.yaw + turned)
+            yield view, math.hypot(row[4] - x, row[8] - y), abs(wrap_angle(off))
 
     def xy(self, x: float, y: float) -> tuple[float, float]:
         """A true point in the map frame, m."""
@@ -88,4 +90,4 @@ def return_errors(judged: Judged) -> list[float]:
         if room in known:
             returned |= {view.stamp for view in views}
         known.add(room)
-    return [off for view, off in judged.views() if view.stamp in returned]
+    return [off for view, off, _ in judged.views() if view.stamp in returned]

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from afkb.flow import Entity, NodeKind, OrientedBox, TopologicalMap
-from afkb_paper.outlines import outline
 from afkb_paper.judged import Judged
+from afkb_paper.outlines import outline
 from afkb_paper.steps import Steps
 
 NEAR_M = 0.3
@@ -39,17 +39,17 @@ def moved_things(judged: Judged, steps: Steps) -> Iterator[Moved]:
         if math.isinf(thing.until):
             continue
         box, then = judged.box(thing), steps.until(thing.until)
-        nodes = _nodes_at(then, box)
-        after = [off for view, off in judged.views() if view.stamp > thing.until]
+        nodes = nodes_at(then, box)
+        after = [off for view, off, _ in judged.views() if view.stamp > thing.until]
         yield Moved(
             thing.name,
             min((e.matching_weight for e in nodes), default=None),
-            tuple(e.id for e in _nodes_at(judged.found, box) if e.existence >= GONE_BELOW),
+            tuple(e.id for e in nodes_at(judged.found, box) if e.existence >= GONE_BELOW),
             max(after, default=math.nan),
         )
 
 
-def _nodes_at(found: TopologicalMap, box: OrientedBox) -> list[Entity]:
+def nodes_at(found: TopologicalMap, box: OrientedBox) -> list[Entity]:
     """Observed nodes that stand where a box is, none much higher."""
     import shapely
 

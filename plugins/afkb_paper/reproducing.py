@@ -15,6 +15,7 @@ from afkb_paper.fetching import fetched
 from afkb_paper.hidden import hidden_things
 from afkb_paper.judged import Judged
 from afkb_paper.moving import moved_things
+from afkb_paper.panels import Camera
 from afkb_paper.rooms import judged_rooms
 from afkb_paper.rows import Outcome, Row, rows
 from afkb_paper.scenarios import Scenario
@@ -60,7 +61,8 @@ def reproduced(
     table = list(rows(scenario.paper, outcome))
     title = f"Scenario {scenario.number}: {scenario.title}"
     drawn = out / f"scenario-{scenario.number}.html"
-    drawn.write_text(sheet(title, uri, table, outcome, Steps.of(folder, host)), encoding="utf-8")
+    steps, camera = Steps.of(folder, host), Camera.of(host, uri)
+    drawn.write_text(sheet(title, uri, table, outcome, steps, camera), encoding="utf-8")
     return Reproduced(scenario, uri, folder, drawn, table)
 
 
@@ -74,4 +76,3 @@ def measured(judged: Judged, folder: Path, host: PluginHost) -> Outcome:
         list(moved_things(judged, steps)),
         fetched(judged, folder, host.knowledge_base),
     )
-

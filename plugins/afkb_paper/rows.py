@@ -75,7 +75,9 @@ def _merged(judged: Judged) -> Row:
     duals = [c for c in judged.found.closures if c.predicted_as is NodeKind.DUAL]
     off = sorted(c.displacement_m for c in duals)
     ours = f"{statistics.median(off):.2f} (greatest {off[-1]:.2f})" if off else "none came true"
-    how = f"{FROM_MAP}: {len(off)} expected by duality, then seen; from the one to the other, median"
+    how = (
+        f"{FROM_MAP}: {len(off)} expected by duality, then seen; from the one to the other, median"
+    )
     value = {"median": round(statistics.median(off), 4), "greatest": round(off[-1], 4)}
     what = "node merging, m"
     return Row("merging", what, UNTOLD, ours, how, value if off else None)
@@ -115,8 +117,8 @@ def _hidden(paper: Figures, hidden: Sequence[Hidden]) -> Row:
         f"{h.blind.hits} lead through it without what is expected, {h.expecting.hits} with"
         for h in hidden
     )
-    avoided = sum(h.avoided for h in hidden)
-    ours = f"{avoided} of {len(hidden)}" if hidden else "none was hidden"
+    avoided, in_the_way = sum(h.avoided for h in hidden), sum(h.blind.hits > 0 for h in hidden)
+    ours = f"{avoided} of {in_the_way}" if in_the_way else "none in the way"
     how = f"{PLANNED} of before it was seen" + (f"; {ways}" if ways else "")
     told = paper.hidden or UNTOLD
     return Row("hidden", "hidden obstacle avoided", told, ours, how, value)

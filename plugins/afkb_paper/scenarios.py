@@ -63,8 +63,9 @@ SCENARIOS = (
 def sources(
     scenarios: Sequence[Scenario], homes: Path | None, host: PluginHost
 ) -> dict[Scenario, str]:
-    """What to map for each scenario: of the homes in a folder the one with most nearly as many
-    rooms as the paper's, none twice; where there are none left, the world.
+    """What to map for each scenario: a home of the folder, else the world.
+
+    The home is the one with most nearly as many rooms as the paper's; none is taken twice.
 
     Raises `SourceError` where a home's truth can't be read.
     """

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from pathlib import Path
 
-from afkb.flow import TopologicalMap
+from afkb.flow import RobotPlace, TopologicalMap
 from afkb.plugins.host import PluginHost
 from afkb_mapping.memory.memory import Memory
 from afkb_mapping.memory.remembered import RememberedView
 from afkb_mapping.memory.storing import memory_of
-from afkb_mapping.rooms.opinions import with_opinions
+from afkb_mapping.structure import is_structure
+
+AT_PLACE_M = 1.0
+"""Half of the least distance between two places of a map: nearer, a view shows what is there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,27 +48,34 @@ class Steps:
                 mapper.add(seen.view, seen.detections, seen.hypotheses if predicting else ())
         found = mapper.finish(visit.T_map_source)
         passed = self.memory.trajectory
-        found = replace(found, trajectory=passed[passed[:, 0] <= stamp])
-        return with_opinions(found, self.host.room_classifiers())
+        return replace(found, trajectory=passed[passed[:, 0] <= stamp])
 
     def before(self, stamp: float) -> float:
         """Stamp of the last view before a moment, s."""
         return max((p.stamp for p in self.memory.passed if p.stamp < stamp), default=stamp)
 
-    def view(self, start: float, end: float) -> RememberedView | None:
-        """Of the views after `start` up to `end`, s, the one in which most was detected."""
-        views = (v for v in self.memory.settled_views if start < v.view.stamp <= end)
-        seen = [v for v in views if v.view.depth_m is not None]
-        return max(seen, key=lambda v: (_detected(v), -v.view.stamp), default=None)
+    def view_at(self, place: RobotPlace, start: float, end: float) -> RememberedView | None:
+        """Of the views at a place from one moment to another, s, the one that shows most things."""
+        seen = [
+            v
+            for v in self.memory.settled_views
+            if start <= v.view.stamp <= end
+            and v.view.depth_m is not None
+            and math.dist(v.T_map_base[:2, 3], (place.x, place.y)) <= AT_PLACE_M
+        ]
+        return max(seen, key=lambda v: (_things(v), -v.view.stamp), default=None)
 
 
-def _detected(seen: RememberedView) -> int:
-    return sum(not d.measures.get("is_floor") for d in seen.detections)
+def _things(seen: RememberedView) -> int:
+    return sum(not is_structure(d) for d in seen.detections)
 
 
-def moments(found: TopologicalMap) -> Sequence[float]:
-    """Stamps at which the paper would draw the map, s: before each new robot place, and the end."""
-    begun = sorted(place.stamp for place in found.places)
+def moments(found: TopologicalMap) -> list[tuple[RobotPlace, float]]:
+    """Each place of the robot, in their order, with when the paper would draw the map, s.
+
+    That is before the robot comes to the next new place, and at the end.
+    """
+    places = sorted(found.places, key=lambda place: place.stamp)
     stamps = found.trajectory[:, 0]
-    ends = [float(stamps[stamps < later].max()) for _, later in pairwise(begun)]
-    return [*ends, float(stamps.max())]
+    ends = [float(stamps[stamps < later.stamp].max()) for later in places[1:]]
+    return list(zip(places, [*ends, float(stamps.max())], strict=True))

@@ -15,7 +15,7 @@ from typing import Any
 
 from afkb.errors import SourceError
 from afkb.figures import Names
-from afkb.flow import OrientedBox, TrueThing, Truth, TrueView
+from afkb.flow import OrientedBox, TrueThing, TrueView, Truth
 from afkb.ontology.bundled import bundled_ontology
 
 FILE = "truth.json"
@@ -33,7 +33,9 @@ def truth_beside(uri: str) -> Truth | None:
     try:
         return truth_of(json.loads(paths[0].read_text(encoding="utf-8")))
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise SourceError(f"{paths[0]}: no truth of a home: {error!r}; mend or remove it") from error
+        raise SourceError(
+            f"{paths[0]}: no truth of a home: {error!r}; mend or remove it"
+        ) from error
 
 
 def truth_of(told: Mapping[str, Any]) -> Truth:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from afkb.flow import TrueThing, Truth, TrueView
+from afkb.flow import TrueThing, TrueView, Truth
 from afkb_mapping.geometry import yaw_of
 from afkb_simulation.reading import read_world
 from afkb_simulation.truth import TrueThing as WorldThing
