@@ -62,25 +62,29 @@ def rows(paper: Figures, outcome: Outcome) -> Iterator[Row]:
 
 
 def _loop_error(paper: Figures, judged: Judged) -> Row:
-    off = return_errors(judged)
-    ours = f"{max(off):.2f} (mean {statistics.fmean(off):.2f})" if off else "no room twice"
+    what, off = "loop error, m", return_errors(judged)
     how = f"{BY_TRUTH}: the robot's place, greatest of {len(off)} views in rooms it came back to"
-    value = {"greatest": round(max(off), 4), "mean": round(statistics.fmean(off), 4)}
-    told = paper.loop_m
-    return Row("loop_error", "loop error, m", told, ours, how, value if off else None)
+    if not off:
+        return Row("loop_error", what, paper.loop_m, "no room twice", how, None)
+    greatest, mean = max(off), statistics.fmean(off)
+    value = {"greatest": round(greatest, 4), "mean": round(mean, 4)}
+    ours = f"{greatest:.2f} (mean {mean:.2f})"
+    return Row("loop_error", what, paper.loop_m, ours, how, value)
 
 
 def _merged(judged: Judged) -> Row:
     """How far expected nodes lay from what was then seen in their place."""
-    duals = [c for c in judged.found.closures if c.predicted_as is NodeKind.DUAL]
-    off = sorted(c.displacement_m for c in duals)
-    ours = f"{statistics.median(off):.2f} (greatest {off[-1]:.2f})" if off else "none came true"
+    what, duals = "node merging, m", NodeKind.DUAL
+    off = sorted(c.displacement_m for c in judged.found.closures if c.predicted_as is duals)
     how = (
         f"{FROM_MAP}: {len(off)} expected by duality, then seen; from the one to the other, median"
     )
-    value = {"median": round(statistics.median(off), 4), "greatest": round(off[-1], 4)}
-    what = "node merging, m"
-    return Row("merging", what, UNTOLD, ours, how, value if off else None)
+    if not off:
+        return Row("merging", what, UNTOLD, "none came true", how, None)
+    median = statistics.median(off)
+    value = {"median": round(median, 4), "greatest": round(off[-1], 4)}
+    ours = f"{median:.2f} (greatest {off[-1]:.2f})"
+    return Row("merging", what, UNTOLD, ours, how, value)
 
 
 def _rooms(paper: Figures, rooms: Sequence[JudgedRoom]) -> Iterator[Row]:
