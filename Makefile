@@ -32,6 +32,8 @@ pictures: $(VENV)/.default  ## make the pictures in the documents again
 	$(BIN)/afkb detect world:paper_home --frame 51 --pictures demo-map-early
 	cp demo-map-early/frame-000051.png docs/detected.png
 	$(BIN)/python -m bench.mapping deceived_hall --picture docs/deceived.svg
+	$(BIN)/afkb reproduce --worlds --scenario 1 --out demo-map-reproduced
+	$(BIN)/python scripts/sheet_picture.py demo-map-reproduced/scenario-1.html docs/paper-steps.svg
 
 pins: $(VENV)/.dev  ## write what is installed as the versions to test with
 	scripts/pin.sh $(BIN)/python

@@ -110,7 +110,13 @@ def _things(found: TopologicalMap) -> Iterator[str]:
             yield d.path(f"outline {kind}", entity.polygon_xy, True)
         yield d.circle(kind, x, y, 0.5 * RADIUS_M, describe(entity))
         if entity.kind is not NodeKind.OBSERVED:
-            yield d.text("p", x, y + 0.1, f"p {entity.existence:.2f}")
+            yield d.text("p", x, _north(entity) + 0.08, f"p {entity.existence:.2f}")
+
+
+def _north(entity: Entity) -> float:
+    """Where a thing's outline ends, y, m."""
+    outline = entity.polygon_xy
+    return entity.position_xyz[1] if outline is None else float(outline[:, 1].max())
 
 
 def _places(found: TopologicalMap) -> Iterator[str]:
