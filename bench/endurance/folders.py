@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, replace
@@ -35,6 +36,7 @@ def killed_often(
         kill = kill_at(command, moment, folders)
         found = {_told(digest(f), before[f], after[f]) for f in folders}
         kills.append(replace(kill, found=_worst(found)))
+        sys.stderr.write(f"{len(kills)}/{times}: {kills[-1].found}\n")
     timed(command, folders)
     return {
         "whole_s": round(timing.whole_s, 2),
