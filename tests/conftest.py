@@ -19,6 +19,7 @@ COMPILES_NOTHING = (
     "extension",
     "figures",
     "filtrations",
+    "fleet",
     "knowledge",
     "modules",
     "network",
