@@ -102,7 +102,8 @@ def post(
 ) -> Reply:
     """The answer to one POST; no redirect is followed, so credentials go nowhere else.
 
-    Raises `PassingTrouble` where asking again may help, and `Refusal` where it won't.
+    Raises `PassingTrouble` where asking again may help; `Refusal`, or for an unknown host
+    `EndpointError`, where it won't.
     """
     headers = {
         "Content-Type": content_type,
@@ -183,8 +184,10 @@ def _unreachable(address: Address, error: Exception, timeout_s: float) -> Endpoi
         why = f"no answer within {timeout_s:g} s"
     elif isinstance(reason, ConnectionRefusedError):
         why = "nobody listens there; is the server running?"
+    elif isinstance(reason, socket.gaierror) and reason.errno == socket.EAI_NONAME:
+        return EndpointError(f"{address.url}: no such host; is the URL spelt right?")
     elif isinstance(reason, socket.gaierror):
-        why = "no such host"
+        why = "its host's address can't be looked up now"
     else:
         why = f"the connection failed ({str(reason) or type(reason).__name__})"
     return PassingTrouble(f"{address.url}: {why}")

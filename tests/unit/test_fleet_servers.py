@@ -1,5 +1,6 @@
 """What answers at a URL: servers that are busy, refuse, or are no SPARQL servers at all."""
 
+import socket
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
@@ -86,3 +87,19 @@ def test_what_is_no_url_of_a_server_is_refused_without_repeating_it(url):
     with pytest.raises(EndpointError) as error:
         Address.read(url)
     assert "pw" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("number", "told"),
+    [
+        (socket.EAI_NONAME, "no such host"),
+        (socket.EAI_AGAIN, "looked up now; given up after 0.1 s"),
+    ],
+)
+def test_a_misspelt_host_is_told_at_once_and_a_lost_network_waited_for(monkeypatch, number, told):
+    def lookup(*_: object) -> None:
+        raise socket.gaierror(number, "said by the system")
+
+    monkeypatch.setattr(socket, "getaddrinfo", lookup)
+    with pytest.raises(EndpointError, match=told):
+        Server.find("http://maps.example", patience_s=0.1)
