@@ -6,11 +6,16 @@ from collections.abc import Iterator, Sequence
 
 from pyoxigraph import BlankNode, Literal, NamedNode, RdfFormat, Triple, serialize
 
-from afkb.serving.answering import GRAPHS, RESULTS
+from afkb.serving.answering import GRAPHS
 
 _SD = "http://www.w3.org/ns/sparql-service-description#"
 _FORMATS = "http://www.w3.org/ns/formats/"
 _TYPE = NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#type")
+_FORMAT_NAMES = (
+    "SPARQL_Results_JSON", "SPARQL_Results_XML", "SPARQL_Results_CSV", "SPARQL_Results_TSV",
+    "Turtle", "N-Triples", "JSON-LD", "RDF_XML",
+)  # fmt: skip
+"""Names of https://www.w3.org/ns/formats/ for what `answering` writes."""
 _PREFIXES = {"sd": _SD, "formats": _FORMATS}
 
 
@@ -27,9 +32,8 @@ def _told(endpoint: str, graphs: Sequence[str]) -> Iterator[Triple]:
     yield Triple(service, _sd("endpoint"), NamedNode(endpoint))
     yield Triple(service, _sd("supportedLanguage"), _sd("SPARQL11Query"))
     yield Triple(service, _sd("feature"), _sd("UnionDefaultGraph"))
-    forms = [form.iri for form in RESULTS.values()] + [form.iri for form in GRAPHS.values()]
-    for form in sorted(set(forms)):
-        yield Triple(service, _sd("resultFormat"), NamedNode(form))
+    for name in _FORMAT_NAMES:
+        yield Triple(service, _sd("resultFormat"), NamedNode(_FORMATS + name))
     yield Triple(service, _sd("defaultDataset"), dataset)
     yield Triple(dataset, _TYPE, _sd("Dataset"))
     yield Triple(dataset, _sd("defaultGraph"), default)

@@ -54,7 +54,12 @@ def _loop(control: socket.socket, shelf: Shelf, limits: Limits, children: set[in
             return
         asked = json.loads(written)
         if handles:
-            child = _fork(asked["kind"], handles[0], control, shelf, limits)
+            try:
+                child = _fork(asked["kind"], handles[0], control, shelf, limits)
+            except OSError as error:
+                # The machine is short of something; the server tells the client to come again.
+                control.sendall(packed({"error": str(error)}))
+                continue
             children.add(child)
             control.sendall(packed({"process": child}))
         else:
@@ -64,17 +69,16 @@ def _loop(control: socket.socket, shelf: Shelf, limits: Limits, children: set[in
 
 def _fork(kind: str, handle: int, control: socket.socket, shelf: Shelf, limits: Limits) -> int:
     """A process of that kind on the other end of a socket; its number."""
-    channel = socket.socket(fileno=handle)
-    process = os.fork()
-    if process == 0:
-        code = 1
-        try:
-            control.close()
-            work(kind, channel, shelf, limits)
-            code = 0
-        finally:
-            os._exit(code)
-    channel.close()
+    with socket.socket(fileno=handle) as channel:
+        process = os.fork()
+        if process == 0:
+            code = 1
+            try:
+                control.close()
+                work(kind, channel, shelf, limits)
+                code = 0
+            finally:
+                os._exit(code)
     return process
 
 

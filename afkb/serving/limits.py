@@ -18,6 +18,7 @@ class Limits:
       `patience_s`; further ones are told to come again.
     - `connections`: open connections. `header_s`, `upload_s`: how long a client may take to send
       its headers and its query; `stalled_s`: how long it may stop reading its answer.
+    - `telling_s`: how long drawing or explaining may take, which runs no stranger's query.
     - `outgoing_mb`: answers that are on their way to slow clients, all together.
     """
 
@@ -32,4 +33,5 @@ class Limits:
     header_s: float = 10.0
     upload_s: float = 10.0
     stalled_s: float = 20.0
+    telling_s: float = 60.0
     outgoing_mb: int = 128

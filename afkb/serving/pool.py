@@ -55,6 +55,8 @@ class Keeper:
         with theirs:
             try:
                 told = self._asked({"kind": kind}, [theirs.fileno()])
+                if "error" in told:
+                    raise ServingError(f"no process could be forked ({told['error']})")
             except ServingError:
                 ours.close()
                 raise
@@ -109,11 +111,14 @@ class _Worker:
 
 
 class Pool:
-    """So many processes of one kind, and those who wait for one."""
+    """So many processes of one kind, and those who wait for one; an answer may take `seconds`."""
 
-    def __init__(self, keeper: Keeper, kind: str, size: int, limits: Limits) -> None:
+    def __init__(
+        self, keeper: Keeper, kind: str, size: int, seconds: float, limits: Limits
+    ) -> None:
         self._keeper = keeper
         self._kind = kind
+        self._seconds = seconds
         self._limits = limits
         self._free: asyncio.Queue[_Worker | None] = asyncio.Queue()
         for _ in range(size):
@@ -132,7 +137,7 @@ class Pool:
         try:
             worker = worker or await self._fork()
             exchange = worker.exchange(head, body)
-            told, content = await asyncio.wait_for(exchange, self._limits.seconds)
+            told, content = await asyncio.wait_for(exchange, self._seconds)
             kept = None if told.get("tired") else worker
             return told, content
         except TimeoutError:
@@ -142,7 +147,7 @@ class Pool:
             ended, worker = worker, None
             raise self._died(await self._end(ended)) from None
         except ServingError:
-            raise busy(2) from None  # The keeper is gone; another is on its way.
+            raise busy(2) from None  # The keeper may be gone; then another is on its way.
         finally:
             if kept is None and worker is not None:
                 self._ending.add(ending := asyncio.create_task(self._end(worker)))
@@ -175,9 +180,7 @@ class Pool:
             return -signal.SIGKILL
 
     def _took_too_long(self) -> Refused:
-        return Refused(
-            504, f"stopped after {self._limits.seconds:g} s, the time limit; ask for less"
-        )
+        return Refused(504, f"stopped after {self._seconds:g} s, the time limit; ask for less")
 
     def _died(self, status: int) -> Refused:
         """What to say of a process that a query has ended, by how it ended."""

@@ -43,8 +43,9 @@ def has_grown(peak_at_start_kb: int) -> bool:
 
 
 def peak_kb() -> int:
-    """The most memory that the process ever held, kB (Linux)."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    """The most memory that the process ever held, kB."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak // 1024 if sys.platform == "darwin" else peak
 
 
 def _silence() -> None:

@@ -27,8 +27,8 @@ class Edition:
         self.maps: list[Head] = told["maps"]
         self.graphs: list[str] = told["graphs"]
         self.keeper = keeper
-        self.asking = Pool(keeper, ASKING, limits.workers, limits)
-        self._telling = Pool(keeper, TELLING, 1, limits)
+        self.asking = Pool(keeper, ASKING, limits.workers, limits.seconds, limits)
+        self._telling = Pool(keeper, TELLING, 1, limits.telling_s, limits)
         self._told: dict[tuple[str, str | None], asyncio.Task[tuple[Head, bytes]]] = {}
 
     async def tell(self, name: str, node: str | None = None) -> tuple[Head, bytes]:
@@ -85,7 +85,7 @@ class Served:
         self._tried = version
         try:
             new = await self._load(version)
-        except AfkbError as error:
+        except (AfkbError, OSError) as error:
             self._tell(f"a map changed on disk and can't be read; the old one is served: {error}")
             return
         loop = asyncio.get_running_loop()

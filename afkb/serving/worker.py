@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import socket
 from collections.abc import Callable
 from functools import partial
 
-from afkb.errors import AfkbError, MapError
+from afkb.errors import AfkbError
 from afkb.serving.answering import Question, answer
 from afkb.serving.channel import Head, packed, receive
 from afkb.serving.errors import Refused
 from afkb.serving.limits import MB, Limits
 from afkb.serving.sealing import allow_processor_time, has_grown, peak_kb, seal
 from afkb.serving.shelf import Shelf
+from afkb.serving.telling import Teller
 
 ASKING = "asking"
 """The kind of process that runs strangers' queries, sealed."""
@@ -27,13 +27,14 @@ def work(kind: str, channel: socket.socket, shelf: Shelf, limits: Limits) -> Non
     if kind == ASKING:
         seal(limits)
     at_start = peak_kb()
+    teller = Teller(shelf)
     while (asked := receive(stream)) is not None:
         if kind == ASKING:
             allow_processor_time(limits.seconds)
             head, body = _told(partial(_asked, shelf, asked, limits))
             head["tired"] = has_grown(at_start)
         else:
-            head, body = _told(partial(_telling, shelf, asked[0]))
+            head, body = _told(partial(teller.tell, asked[0]))
         stream.write(packed(head, body))
         stream.flush()
 
@@ -55,24 +56,3 @@ def _asked(shelf: Shelf, asked: tuple[Head, bytes], limits: Limits) -> tuple[str
     head, body = asked
     question = Question(body.decode(), head["default"], head["named"], head["accept"])
     return answer(shelf, question, limits.answer_mb * MB)
-
-
-def _telling(shelf: Shelf, asked: Head) -> tuple[str, bytes]:
-    stored = shelf.maps[asked["map"]]
-    node = asked.get("node")
-    if node is None:
-        import afkb.drawing
-
-        drawing_of_stored = getattr(afkb.drawing, "drawing_of_stored")  # noqa: B009
-        told = drawing_of_stored(stored) | {"name": asked["map"]}
-    else:
-        from afkb.explaining import explain
-        from afkb.explaining.shape import explanation_json
-        from afkb.store.made_with import knowledge_of
-
-        try:
-            told = explanation_json(explain(stored, node, knowledge_of(stored)))
-        except MapError as error:
-            # Where the map lies on the server's disk is not the client's affair.
-            raise Refused(404, str(error).replace(str(stored.folder), asked["map"])) from error
-    return "application/json", json.dumps(told, allow_nan=False).encode()
