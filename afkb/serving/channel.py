@@ -12,6 +12,10 @@ from typing import Any, Protocol
 
 Head = dict[str, Any]
 Message = tuple[Head, bytes]
+ASKING = "asking"
+"""The kind of process that runs strangers' queries, sealed."""
+TELLING = "telling"
+"""The kind that runs none, and draws and explains maps."""
 _LENGTHS = struct.Struct("!II")
 
 

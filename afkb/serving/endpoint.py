@@ -5,9 +5,9 @@ from __future__ import annotations
 from starlette.requests import Request
 from starlette.responses import Response
 
-from afkb.serving.answering import GRAPHS
 from afkb.serving.description import description
 from afkb.serving.errors import Refused
+from afkb.serving.forms import GRAPHS
 from afkb.serving.negotiation import preferred
 from afkb.serving.protocol import FORM, QUERY, question_of
 from afkb.serving.sending import Outgoing, while_connected

@@ -37,8 +37,8 @@ def keep(control: socket.socket, settings: Head) -> None:
     except AfkbError as error:
         control.sendall(packed({"error": str(error)}))
         return
-    _import_what_queries_need()
     control.sendall(packed({"maps": shelf.listed(), "graphs": shelf.graph_names()}))
+    _import_what_queries_need()
     children: set[int] = set()
     try:
         _loop(control, shelf, limits, children)

@@ -10,8 +10,8 @@ from urllib.parse import parse_qs
 
 from starlette.requests import Request
 
-from afkb.serving.answering import Question
 from afkb.serving.errors import Refused
+from afkb.serving.forms import Question
 from afkb.serving.limits import Limits
 
 QUERY = "application/sparql-query"

@@ -5,14 +5,13 @@ from __future__ import annotations
 import asyncio
 import hashlib
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from afkb.errors import AfkbError
-from afkb.serving.channel import Head
+from afkb.serving.channel import ASKING, TELLING, Head
 from afkb.serving.limits import Limits
 from afkb.serving.pool import Keeper, Pool
-from afkb.serving.worker import ASKING, TELLING
-from afkb.store.stored import SCENE_FILE
 
 _LOOK_S = 1.0
 """So often the disk is looked at for maps that were written anew."""
@@ -112,16 +111,13 @@ class Served:
                 edition.keeper.close()
 
     def _on_disk(self) -> str:
-        """A name for the maps' files as they are now; another where one was written anew."""
+        """A name for the maps' RDF as it is now; another where one was written anew."""
         found = hashlib.sha256()
-        for folder in self._folders:
-            try:
-                state = (folder / SCENE_FILE).stat()
-            except OSError:
-                found.update(f"{folder} gone".encode())
-                continue
-            told = (folder, state.st_dev, state.st_ino, state.st_mtime_ns, state.st_size)
-            found.update(repr(told).encode())
+        for file in (file for folder in self._folders for file in sorted(folder.glob("*.ttl"))):
+            with suppress(FileNotFoundError):  # It is being replaced this very moment.
+                state = file.stat()
+                told = (file, state.st_dev, state.st_ino, state.st_mtime_ns, state.st_size)
+                found.update(repr(told).encode())
         return found.hexdigest()[:16]
 
     def close(self) -> None:

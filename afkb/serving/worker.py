@@ -5,20 +5,16 @@ from __future__ import annotations
 import socket
 from collections.abc import Callable
 from functools import partial
+from io import BufferedRWPair
 
 from afkb.errors import AfkbError
-from afkb.serving.answering import Question, answer
-from afkb.serving.channel import Head, packed, receive
+from afkb.serving.answering import answer
+from afkb.serving.channel import ASKING, Head, packed, receive
 from afkb.serving.errors import Refused
+from afkb.serving.forms import Question
 from afkb.serving.limits import MB, Limits
 from afkb.serving.sealing import allow_processor_time, has_grown, peak_kb, seal
 from afkb.serving.shelf import Shelf
-from afkb.serving.telling import Teller
-
-ASKING = "asking"
-"""The kind of process that runs strangers' queries, sealed."""
-TELLING = "telling"
-"""The kind that runs none, and draws and explains maps."""
 
 
 def work(kind: str, channel: socket.socket, shelf: Shelf, limits: Limits) -> None:
@@ -26,16 +22,27 @@ def work(kind: str, channel: socket.socket, shelf: Shelf, limits: Limits) -> Non
     stream = channel.makefile("rwb")
     if kind == ASKING:
         seal(limits)
+        _answer_queries(stream, shelf, limits)
+    else:
+        _tell(stream, shelf)
+
+
+def _answer_queries(stream: BufferedRWPair, shelf: Shelf, limits: Limits) -> None:
     at_start = peak_kb()
+    while (asked := receive(stream)) is not None:
+        allow_processor_time(limits.seconds)
+        head, body = _told(partial(_asked, shelf, asked, limits))
+        head["tired"] = has_grown(at_start)
+        stream.write(packed(head, body))
+        stream.flush()
+
+
+def _tell(stream: BufferedRWPair, shelf: Shelf) -> None:
+    from afkb.serving.telling import Teller
+
     teller = Teller(shelf)
     while (asked := receive(stream)) is not None:
-        if kind == ASKING:
-            allow_processor_time(limits.seconds)
-            head, body = _told(partial(_asked, shelf, asked, limits))
-            head["tired"] = has_grown(at_start)
-        else:
-            head, body = _told(partial(teller.tell, asked[0]))
-        stream.write(packed(head, body))
+        stream.write(packed(*_told(partial(teller.tell, asked[0]))))
         stream.flush()
 
 

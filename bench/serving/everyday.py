@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 
 from afkb.knowledge import bundled_ontology
-from afkb.serving.answering import Question, answer
+from afkb.serving.answering import answer
+from afkb.serving.forms import Question
 from afkb.serving.shelf import Shelf
 from afkb.store.named import named_queries
 from bench.serving.watched import QUERY, Watched, add_map, served
