@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
+from functools import cache
 
 from pyoxigraph import Literal, NamedNode, Store
 
@@ -14,6 +15,11 @@ Value = NamedNode | Literal
 Said = dict[str, list[Value]]
 _NOTHING: Said = {}
 _TYPE = term("rdf:type").value
+
+
+@cache
+def _iri(curie: str) -> str:
+    return term(curie).value
 
 
 class Facts:
@@ -56,7 +62,7 @@ class Thing:
 
     def values(self, predicate: str) -> list[Value]:
         """All that is stated by a property, in no order."""
-        return self.said.get(term(predicate).value, [])
+        return self.said.get(_iri(predicate), [])
 
     def number(self, predicate: str, default: float = 0.0) -> float:
         """A number, or the default."""
