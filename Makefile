@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 SET_UP := pyproject.toml constraints.txt scripts/set-up.sh scripts/apt.sh
 
-.PHONY: demo test lint gates format pictures pins clean
+.PHONY: demo test lint gates format pictures site pins clean
 
 demo: $(VENV)/.default  ## map the bundled simulated home and print what was found
 	$(BIN)/afkb demo --out demo-map
@@ -35,11 +35,14 @@ pictures: $(VENV)/.default  ## make the pictures in the documents again
 	$(BIN)/afkb reproduce --worlds --scenario 1 --out demo-map-reproduced
 	$(BIN)/python scripts/sheet_picture.py demo-map-reproduced/scenario-1.html docs/paper-steps.svg
 
+site: $(VENV)/.dev  ## make the documents into a site, in site/
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+
 pins: $(VENV)/.dev  ## write what is installed as the versions to test with
 	scripts/pin.sh $(BIN)/python
 
 clean:  ## remove the environment and what the targets made
-	rm -rf $(VENV) demo-map demo-map-early
+	rm -rf $(VENV) demo-map demo-map-early site
 
 $(VENV)/.default: $(SET_UP)
 	scripts/set-up.sh $(PYTHON) $(VENV) .

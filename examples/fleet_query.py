@@ -1,4 +1,4 @@
-"""Several homes asked as one: which of them has room on a table, and what are their rooms?
+"""Several homes asked as one: which of them has room on a table, and what their rooms are for.
 
 usage: python examples/fleet_query.py MAP MAP ...
 """

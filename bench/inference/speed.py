@@ -3,8 +3,9 @@
     python -m bench.inference speed [--json]
 
 CPU milliseconds, median and 95th percentile, of calls after the first ones; nothing is kept from
-call to call, each looks at all the evidence. `pgmpy`: its variable elimination on the same tables,
-for a part of the network that it can hold.
+call to call, each looks at all the evidence. `pgmpy`, `pyAgrum`: variable elimination and lazy
+propagation on the same tables, for a part of the network that they can hold; both must answer the
+same (tests hold the closed forms to pgmpy's answers). pyAgrum comes with the extra `bench`.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from afkb.inference.pgm import COUNT_STATES, ROOM, contents_model, room_model
 from afkb.inference.rooms import bin_of
 from afkb.plugins.host import PluginHost
 from afkb.testing import sample_detections
+from bench.inference.pgm_peers import pgmpy_query, pyagrum_query
 
 CALLS, WARM = 300, 20
 CROWD = 20
@@ -72,28 +74,33 @@ def measured(host: PluginHost) -> dict[str, dict[str, float]]:
         found[f"{predictor.name}, {CROWD} things"] = milliseconds(
             lambda predictor=predictor: predictor.predict(crowd)
         )
-    return found | by_pgmpy(network, counts)
+    return found | by_others(network, counts)
 
 
-def by_pgmpy(network: Network, counts: Mapping[str, int]) -> dict[str, dict[str, float]]:
-    """The same questions, put to pgmpy's variable elimination on the same tables."""
-    from pgmpy.inference import VariableElimination  # Loaded for this part alone: it takes seconds.
-
-    rooms = VariableElimination(room_model(network.rooms))
+def by_others(network: Network, counts: Mapping[str, int]) -> dict[str, dict[str, float]]:
+    """The same questions, put to pgmpy and pyAgrum; `AssertionError` where answers differ."""
     evidence = {name: COUNT_STATES[bin_of(name, n)] for name, n in counts.items()}
-    few = network.contents_network.among(SEEN)
-    contents = VariableElimination(contents_model(few))
     asked, *others = SEEN
     told = {f"{name}InRoom": "yes" for name in others}
-    return {
-        "purpose of a room, pgmpy": milliseconds(
-            lambda: rooms.query([ROOM], evidence=evidence, show_progress=False), PEER_CALLS
-        ),
-        f"one category of {len(SEEN)}, pgmpy": milliseconds(
-            lambda: contents.query([f"{asked}InRoom"], evidence=told, show_progress=False),
-            PEER_CALLS,
+    questions = {
+        "purpose of a room": (room_model(network.rooms), ROOM, evidence),
+        f"one category of {len(SEEN)}": (
+            contents_model(network.contents_network.among(SEEN)),
+            f"{asked}InRoom",
+            told,
         ),
     }
+    found = {}
+    for what, (model, target, known) in questions.items():
+        right = pgmpy_query(model, target, known)()
+        for peer, question in (("pgmpy", pgmpy_query), ("pyAgrum", pyagrum_query)):
+            try:
+                ask = question(model, target, known)
+            except ImportError:
+                continue
+            np.testing.assert_allclose(ask(), right, atol=1e-6)
+            found[f"{what}, {peer}"] = milliseconds(ask, PEER_CALLS)
+    return found
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,1 @@
+"""All measurements, run by one command, and the document that is written from their results."""
