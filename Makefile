@@ -24,7 +24,7 @@ format: $(VENV)/.dev  ## mend what the formatter can mend
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-pictures: $(VENV)/.default  ## make the pictures in the documents again
+pictures: $(VENV)/.dev  ## make the pictures in the documents again
 	$(BIN)/afkb demo --out demo-map
 	$(BIN)/afkb map world:paper_home --out demo-map-early --stop 6
 	$(BIN)/python scripts/picture.py demo-map docs/demo-map.svg edges ids
@@ -32,6 +32,7 @@ pictures: $(VENV)/.default  ## make the pictures in the documents again
 	$(BIN)/afkb detect world:paper_home --frame 51 --pictures demo-map-early
 	cp demo-map-early/frame-000051.png docs/detected.png
 	$(BIN)/python -m bench.mapping deceived_hall --picture docs/deceived.svg
+	$(BIN)/python scripts/page_picture.py demo-map docs/page.png surface-124
 	$(BIN)/afkb reproduce --worlds --scenario 1 --out demo-map-reproduced
 	$(BIN)/python scripts/sheet_picture.py demo-map-reproduced/scenario-1.html docs/paper-steps.svg
 

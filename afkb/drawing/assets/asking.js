@@ -7,9 +7,9 @@ const SHOWN = 500;
 // What is asked along with one map: the ontology, and what follows from it.
 const KNOWN = ["urn:afkb:ontology", "urn:afkb:inferred", "urn:afkb:believed"];
 const ACCEPTED = "application/sparql-results+json, text/turtle;q=0.8, application/json;q=0.5";
-const GREETING = "SELECT ?thing ?category ?probability WHERE {\n"
-  + "  ?thing a afn:ObservedEntity ; afn:categoryBelief ?belief .\n"
-  + "  ?belief afn:category ?category ; afn:probability ?probability .\n"
+const GREETING = "SELECT ?thing ?category ?probability {\n"
+  + "  ?thing a afn:ObservedEntity ;\n         afn:categoryBelief ?b .\n"
+  + "  ?b afn:category ?category ;\n     afn:probability ?probability .\n"
   + "  FILTER (?probability > 0.5)\n}\nORDER BY DESC(?probability)";
 
 // shown(): { board, base, graph } of the map on the page.

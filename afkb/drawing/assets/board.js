@@ -52,7 +52,8 @@ export class Board extends EventTarget {
   // Lights nodes up, above all else that is dimmed; none: everything as usual.
   light(ids) {
     const known = [...new Set(ids)].filter((id) => this.elements.has(id));
-    const marks = known.flatMap((id) => this.elements.get(id).filter((d) => d.matches(LIT)));
+    const kept = known.length && this.chosen ? [...known, this.chosen] : known;
+    const marks = kept.flatMap((id) => (this.elements.get(id) || []).filter((d) => d.matches(LIT)));
     this.lights ??= this.#layer();
     this.lights.replaceChildren(...marks.map((drawn) => {
       const copy = drawn.cloneNode();

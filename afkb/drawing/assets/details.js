@@ -56,8 +56,9 @@ export function bars(title, belief) {
 }
 
 function relations(board, facts) {
+  const seen = facts.kind === "ObservedEntity";
   const rows = RELATIONS.filter(([key]) => facts[key]).map(([key, told]) => [
-    element("dt", {}, told),
+    element("dt", {}, key === "from" && seen ? `was ${told}` : told),
     element("dd", {}, [facts[key]].flat().map((id) => board.nodes[id]
       ? element("button", { type: "button", class: "node-link",
         onclick: () => board.choose(id, "list") }, id)
