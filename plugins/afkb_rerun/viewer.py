@@ -11,7 +11,7 @@ import numpy as np
 from afkb.errors import PluginError
 from afkb.flow import Detection, TopologicalMap, View
 from afkb_rerun.drawing import EXPECTED, draw, log_pose
-from afkb_rerun.stream import STAMPS, VIEWS, new_stream, rerun, save_to
+from afkb_rerun.stream import STAMPS, VIEWS, connect, new_stream, open_window, rerun, save_to
 
 _MILLIMETRES = 1000.0
 
@@ -32,9 +32,9 @@ class RerunViewer:
         """Open the window, the file or the connection."""
         stream = new_stream(uri)
         if target is None:
-            _spawn(stream)
+            open_window(stream)
         elif "://" in target:
-            stream.connect_grpc(target)
+            connect(stream, target)
         elif target.endswith(".rrd"):
             save_to(stream, Path(target).expanduser())
         else:
@@ -60,15 +60,6 @@ class RerunViewer:
         draw(self._stream, topological_map)
         self._stream.flush()
         self._stream.disconnect()
-
-
-def _spawn(stream: Any) -> None:
-    try:
-        stream.spawn()
-    except RuntimeError as error:
-        raise PluginError(
-            f"rerun's window does not open ({error}); write a file with --view rerun=FILE.rrd"
-        ) from error
 
 
 def _log_depth(stream: Any, view: View) -> None:

@@ -125,7 +125,7 @@ def test_rerun_reads_the_whole_map_from_the_recording(tmp_path: Path) -> None:
 
     pytest.importorskip("rerun")
     folder = write_map(tmp_path / "m", sample_map(), {}, [Nav2Exporter()], Names())
-    (file,) = export_map(folder, "rerun", tmp_path / "home.rrd")
+    (file,) = export_map(folder, "rerun", tmp_path / "home.rrd", host=host_with())
     found = read(file)
     things = {"/map/observed/n1", "/map/dynamic/n2", "/map/observed/n10", "/map/expected/n3"}
     assert things | {"/map/past/n4"} <= set(found)
@@ -148,6 +148,27 @@ def test_rerun_shows_views_and_the_finished_map_in_a_file(tmp_path: Path) -> Non
         RerunViewer().begin("x", str(target))
     with pytest.raises(PluginError, match=r"ends in \.rrd"):
         RerunViewer().begin("x", str(tmp_path / "film.mp4"))
+
+
+@pytest.mark.parametrize(
+    ("target", "what"),
+    [
+        ("rerun+http://127.0.0.1:1/proxy", "no viewer answers"),
+        ("http://127.0.0.1:9876/proxy", r"write it as rerun\+http"),
+        ("rerun+http://127.0.0.1:port/proxy", "not an address"),
+        (None, "no display"),
+    ],
+)
+def test_where_nothing_can_be_shown_is_told_in_one_line(
+    target: str | None, what: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("rerun")
+    monkeypatch.setattr(sys, "platform", "linux")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    with pytest.raises(PluginError, match=what) as told:
+        RerunViewer().begin("my-recording", target)
+    assert "\n" not in str(told.value)
 
 
 def test_without_reruns_package_one_line_says_how_to_get_it(
