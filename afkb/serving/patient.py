@@ -7,6 +7,7 @@ slowly an answer may be taken.
 from __future__ import annotations
 
 import asyncio
+import socket
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
@@ -27,6 +28,9 @@ def patient_protocol(limits: Limits) -> type[H11Protocol]:
             if len(self.connections) > limits.connections:
                 transport.abort()
                 return
+            # Headers and body are written one after the other; else the body waits 40 ms for the
+            # client to say that it has the headers.
+            transport.get_extra_info("socket").setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             self._expect_headers()
 
         def data_received(self, data: bytes) -> None:
