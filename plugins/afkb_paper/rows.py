@@ -6,7 +6,7 @@ import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from afkb.flow import NodeKind
+from afkb.flow import NodeKind, TopologicalMap
 from afkb_mapping.demo_table import transient_per_place
 from afkb_paper.fetching import FETCHED, Fetched
 from afkb_paper.hidden import Hidden
@@ -49,16 +49,24 @@ def rows(paper: Figures, outcome: Outcome) -> Iterator[Row]:
     found = outcome.judged.found
     places = len(found.places)
     yield Row("places", "place nodes", str(paper.places), str(places), FROM_MAP, places)
-    transient = round(transient_per_place(found), 1)
-    how = f"{FROM_MAP}: movable things seen from a place, mean"
-    told = paper.transient or UNTOLD
-    yield Row("transient", "transient nodes per waypoint", told, f"{transient}", how, transient)
+    yield _transient(paper, found)
     yield _loop_error(paper, outcome.judged)
     yield _merged(outcome.judged)
     yield from _rooms(paper, outcome.rooms)
     yield _hidden(paper, outcome.hidden)
     yield _moved(paper, outcome.moved)
     yield _fetched(outcome.fetched)
+
+
+def _transient(paper: Figures, found: TopologicalMap) -> Row:
+    """Things that may move: those that a place adds to the graph, and those that are seen there."""
+    what, told = "transient nodes per waypoint", paper.transient or UNTOLD
+    dynamic = sum(e.movability == "Dynamic" for e in found.entities)
+    new = round(dynamic / max(1, len(found.places)), 1)
+    seen = round(transient_per_place(found), 1)
+    how = f"{FROM_MAP}: things that may move, over its places; mean in sight of one"
+    value = {"new": new, "seen": seen}
+    return Row("transient", what, told, f"{new} new ({seen} in sight)", how, value)
 
 
 def _loop_error(paper: Figures, judged: Judged) -> Row:
