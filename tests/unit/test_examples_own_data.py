@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 from pathlib import Path
 from types import ModuleType
 
@@ -59,6 +60,8 @@ def test_own_rgbd_folder(
         poses.append((view.stamp, *_pose(view.T_odom_base)))
     (folder / "depth.txt").write_text("\n".join(listed))
     write_poses(folder / "odometry.txt", poses)
+    with (folder / "odometry.txt").open("a") as file:
+        file.write("3 lost\n")
     camera, mounted = views[0].camera, views[0].T_base_camera
     assert camera is not None
     assert mounted is not None
@@ -70,6 +73,8 @@ def test_own_rgbd_folder(
     )
     printed = capsys.readouterr().out
     assert f"{len(views)} frames" in printed
+    run = json.loads((tmp_path / "map" / "run.json").read_text())
+    assert any("odometry.txt: 1 line left out as unreadable" in note for note in run["notes"])
     heights = [float(line.split(": ")[1][:4]) for line in printed.splitlines() if "m high" in line]
     assert min(abs(height - 0.75) for height in heights) < 0.03
 
