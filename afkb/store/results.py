@@ -1,9 +1,9 @@
-"""Answers to queries, and how they are written: table rows, CSV, SPARQL JSON, Turtle."""
+"""Answers to queries, and how they are written: table rows, CSV, TSV, SPARQL JSON, XML, RDF."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from pyoxigraph import (
@@ -11,10 +11,12 @@ from pyoxigraph import (
     Literal,
     NamedNode,
     QueryBoolean,
+    QueryResultsFormat,
     QuerySolutions,
     QueryTriples,
     RdfFormat,
     Triple,
+    parse_query_results,
     serialize,
 )
 
@@ -22,7 +24,18 @@ from afkb.errors import QueryError
 from afkb.store.turtle import canonical
 
 Cell = NamedNode | BlankNode | Literal | Triple | None
-FORMATS = ("table", "csv", "json", "ttl")
+FORMATS = ("table", "csv", "tsv", "json", "xml", "ttl", "nt")
+_ROWS = {
+    "csv": QueryResultsFormat.CSV,
+    "tsv": QueryResultsFormat.TSV,
+    "xml": QueryResultsFormat.XML,
+}
+_TRIPLES = {
+    "json": RdfFormat.JSON_LD,
+    "xml": RdfFormat.RDF_XML,
+    "ttl": RdfFormat.TURTLE,
+    "nt": RdfFormat.N_TRIPLES,
+}
 
 
 @dataclass(frozen=True)
@@ -47,12 +60,17 @@ class QueryResult:
         if isinstance(answer, QueryBoolean):
             return cls(("answer",), (), truth=bool(answer), prefixes=prefixes)
         if isinstance(answer, QueryTriples):
-            triples = tuple(canonical(answer))
-            rows = tuple((t.subject, t.predicate, t.object) for t in triples)
-            return cls(("subject", "predicate", "object"), rows, triples=triples, prefixes=prefixes)
+            return cls.of_triples(answer, prefixes)
         columns = tuple(variable.value for variable in answer.variables)
         rows = tuple(tuple(solution[c] for c in columns) for solution in answer)
         return cls(columns, rows, prefixes=prefixes)
+
+    @classmethod
+    def of_triples(cls, found: Iterable[Triple], prefixes: Mapping[str, str]) -> QueryResult:
+        """What CONSTRUCT and DESCRIBE gave, without doubles, in a fixed order."""
+        triples = tuple(canonical(found))
+        rows = tuple((t.subject, t.predicate, t.object) for t in triples)
+        return cls(("subject", "predicate", "object"), rows, triples=triples, prefixes=prefixes)
 
     def cells(self) -> list[tuple[str, ...]]:
         """Rows as short text: prefixed names, plain numbers."""
@@ -70,35 +88,29 @@ class QueryResult:
         return cell.value if isinstance(cell, NamedNode | Literal | BlankNode) else str(cell)
 
     def text(self, form: str) -> str:
-        """The answer as `csv`, `json` or `ttl`; `QueryError` where the two don't go together."""
-        if form == "csv":
-            return self._csv()
+        """The answer as `csv`, `tsv`, `json`, `xml`, `ttl` or `nt`; triples as rows, too.
+
+        `QueryError` where the two don't go together: Turtle and N-Triples need triples.
+        """
+        if self.triples is not None and form in _TRIPLES:
+            return self._rdf(_TRIPLES[form])
         if form == "json":
             return self._json()
-        if self.triples is None:
+        if form not in _ROWS:
             raise QueryError(
                 "Turtle needs triples: write a CONSTRUCT or DESCRIBE, or choose --format table, "
                 "csv or json"
             )
-        return self._rdf(RdfFormat.TURTLE)
-
-    def _csv(self) -> str:
-        import csv
-        import io
-
-        out = io.StringIO()
-        writer = csv.writer(out)
-        writer.writerow(self.columns)
-        writer.writerows([_plain(cell) for cell in row] for row in self.rows)
-        if self.truth is not None:
-            writer.writerow(["true" if self.truth else "false"])
-        return out.getvalue()
+        if self.truth is not None and form != "xml":
+            # The standard has no CSV for ASK.
+            return f"answer\n{'true' if self.truth else 'false'}\n"
+        # Oxigraph writes what it has read: the standard's escapes are its business.
+        answer = parse_query_results(self._json(), format=QueryResultsFormat.JSON)
+        return (answer.serialize(format=_ROWS[form]) or b"").decode()
 
     def _json(self) -> str:
         if self.truth is not None:
             return json.dumps({"head": {}, "boolean": self.truth}) + "\n"
-        if self.triples is not None:
-            return self._rdf(RdfFormat.JSON_LD)
         bindings = [
             {c: _binding(cell) for c, cell in zip(self.columns, row, strict=True) if cell}
             for row in self.rows
@@ -110,12 +122,6 @@ class QueryResult:
         prefixes = dict(self.prefixes or {}) if form == RdfFormat.TURTLE else None
         written = serialize(self.triples or (), format=form, prefixes=prefixes)
         return (written or b"").decode()
-
-
-def _plain(cell: Cell) -> str:
-    if cell is None:
-        return ""
-    return cell.value if isinstance(cell, NamedNode | Literal) else str(cell)
 
 
 def _binding(cell: Cell) -> dict[str, str]:

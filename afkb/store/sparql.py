@@ -11,9 +11,11 @@ from pyoxigraph import NamedNode, Quad, QueryBoolean, QuerySolutions, QueryTripl
 from afkb.errors import QueryError
 from afkb.knowledge.closure import BELIEVED_GRAPH, INFERRED_GRAPH, classify
 from afkb.knowledge.definitions import Definitions
+from afkb.store.limited import within
 from afkb.store.results import QueryResult
 from afkb.store.sparql_loading import ONTOLOGY_GRAPH, load_closed
 from afkb.store.sparql_text import (
+    check_syntax,
     graphs_named,
     names_its_dataset,
     refuse_writing,
@@ -26,7 +28,12 @@ _ALWAYS_THERE = {ONTOLOGY_GRAPH, INFERRED_GRAPH, BELIEVED_GRAPH}
 Answer = QuerySolutions | QueryBoolean | QueryTriples
 
 
-def query(maps: Sequence[StoredMap], sparql: str, ontology: Iterable[Path] = ()) -> QueryResult:
+def query(
+    maps: Sequence[StoredMap],
+    sparql: str,
+    ontology: Iterable[Path] = (),
+    timeout_s: float | None = None,
+) -> QueryResult:
     """The answer to a SELECT, ASK, CONSTRUCT or DESCRIBE over one or several maps.
 
     For one question; `Dataset.load` keeps the maps for several. Prefixes (`afn:`, `geo:`, `prov:`,
@@ -35,9 +42,9 @@ def query(maps: Sequence[StoredMap], sparql: str, ontology: Iterable[Path] = ())
     updates and SERVICE.
     """
     refuse_writing(sparql)
-    # Parsed against nothing first: a slip in the query is told before anything is loaded.
-    _answer(Store(), sparql, _prefixes(maps))
-    return Dataset.load(maps, ontology).ask(sparql)
+    # First of all: a slip in the query is told before anything is loaded.
+    check_syntax(sparql, prefixes_for(maps))
+    return Dataset.load(maps, ontology).ask(sparql, timeout_s=timeout_s)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,17 +78,28 @@ class Dataset:
             graphs[name] = stored.folder
             store.bulk_extend(_in_graph(stored, NamedNode(name)))
         classify(store, definitions, graphs)
-        return cls(store, graphs, _prefixes(maps))
+        return cls(store, graphs, prefixes_for(maps))
 
     def ask(
-        self, sparql: str, default_graphs: Sequence[str] = (), named_graphs: Sequence[str] = ()
+        self,
+        sparql: str,
+        default_graphs: Sequence[str] = (),
+        named_graphs: Sequence[str] = (),
+        timeout_s: float | None = None,
     ) -> QueryResult:
-        """The answer, read to its end; arguments and errors as of `answer`."""
-        found = self.answer(sparql, default_graphs, named_graphs)
-        try:
-            return QueryResult.read(found, self.prefixes)
-        except OSError as error:
-            raise QueryError(f"the query failed while it ran: {error}") from error
+        """The answer, read to its end, within `timeout_s` seconds (None: however long it takes).
+
+        Other arguments and errors as of `answer`; `QueryError` also where the time is over.
+        """
+
+        def asked() -> QueryResult:
+            found = self.answer(sparql, default_graphs, named_graphs)
+            try:
+                return QueryResult.read(found, self.prefixes)
+            except OSError as error:
+                raise QueryError(f"the query failed while it ran: {error}") from error
+
+        return asked() if timeout_s is None else within(timeout_s, asked)
 
     def answer(
         self, sparql: str, default_graphs: Sequence[str] = (), named_graphs: Sequence[str] = ()
@@ -123,7 +141,8 @@ def graph_name(folder: Path, taken: set[str]) -> str:
     return name
 
 
-def _prefixes(maps: Sequence[StoredMap]) -> dict[str, str]:
+def prefixes_for(maps: Sequence[StoredMap]) -> dict[str, str]:
+    """Prefixes that need no declaration; `scene:` is the first map's."""
     return dict(PREFIXES) | ({"scene": maps[0].base} if maps else {})
 
 

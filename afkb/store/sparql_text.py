@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from pyoxigraph import Store
 
@@ -42,15 +42,36 @@ def _keywords(sparql: str) -> Iterator[tuple[str, int]]:
 
 def refuse_writing(sparql: str) -> None:
     """`QueryError` for a SPARQL update, and for SERVICE, which would ask the network."""
+    refuse_updates(sparql)
+    for word, start in _keywords(sparql):
+        if word == "SERVICE":
+            raise _service_refused(sparql, start)
+    _refuse_hidden_service(sparql)
+
+
+def refuse_updates(sparql: str) -> None:
+    """`QueryError` for a SPARQL update."""
     for word, start in _keywords(sparql):
         if word in _UPDATES and not _query_began(sparql, start):
             raise QueryError(
                 f"{_place(sparql, start)}: {word} is a SPARQL update and a map is read-only; "
                 "ask with SELECT, ASK, CONSTRUCT or DESCRIBE"
             )
-        if word == "SERVICE":
-            raise _service_refused(sparql, start)
-    _refuse_hidden_service(sparql)
+
+
+def check_syntax(sparql: str, prefixes: Mapping[str, str]) -> None:
+    """`QueryError`, with line and column, for a query that can't be parsed; nothing is asked.
+
+    One with the word SERVICE is let through, since it would be run to be parsed.
+    """
+    if _SERVICE.search(sparql):
+        return
+    try:
+        Store().query(sparql, prefixes=dict(prefixes))
+    except SyntaxError as error:
+        raise syntax_error(sparql, error) from error
+    except (OSError, ValueError, RuntimeError):
+        return
 
 
 def _service_refused(sparql: str, start: int) -> QueryError:

@@ -149,7 +149,7 @@ def test_failures_are_one_line_and_exit_1(run, home: Path, arguments: list[str],
         ["query", "m", "ASK {}", "more"],
         ["bogus"],
         ["rooms", "m", "--bogus"],
-        ["query", "m", "ASK {}", "--format", "xml"],
+        ["query", "m", "ASK {}", "--format", "docx"],
     ],
 )
 def test_wrong_usage_exits_2(run, arguments: list[str]) -> None:

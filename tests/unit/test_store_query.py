@@ -12,8 +12,9 @@ from pyoxigraph import Store
 
 from afkb.errors import KnowledgeError, QueryError
 from afkb.store import Dataset, StoredMap, load, query, write_map
-from afkb.store.named import named_queries, named_query
+from afkb.store.named import check_known, named_queries, named_query, read_values
 from afkb.store.sparql_text import refuse_writing
+from afkb.store.vocabulary import PREFIXES
 from store_samples import Names, sample_map
 
 
@@ -144,16 +145,57 @@ def test_turtle_needs_triples(stored: StoredMap) -> None:
         query([stored], "SELECT * { ?s ?p ?o }").text("ttl")
 
 
-@pytest.mark.parametrize("name", [q.name for q in named_queries()])
-def test_each_query_of_the_library_answers_on_a_map(stored: StoredMap, name: str) -> None:
-    found = named_query(name)
-    assert found.about
-    assert query([stored], found.sparql).rows
+def test_parameters_are_filled_in() -> None:
+    found = named_query("things-by-category")
+    assert [(p.name, p.kind, p.default) for p in found.parameters] == [
+        ("category", "afn:", "Table")
+    ]
+    assert "VALUES ?category { afn:Mug }" in found.filled({"category": "Mug"})
+    assert "{ afn:Mug }" in found.filled({"category": "afn:Mug"})
+    with pytest.raises(QueryError, match="has no parameter 'kind'; it takes: category=Table"):
+        found.filled({"kind": "Mug"})
+    with pytest.raises(QueryError, match="a number is wanted"):
+        named_query("doubtful-things").filled({"below": "much"})
+    with pytest.raises(QueryError, match="NAME=VALUE"):
+        read_values(["Mug"])
+
+
+@given(st.text(min_size=1, max_size=20))
+@settings(max_examples=100)
+def test_no_value_of_a_parameter_can_change_the_query(value: str) -> None:
+    found = named_query("things-by-category")
+    try:
+        filled = found.filled({"category": value})
+    except QueryError:
+        return
+    assert list(Store().query(filled, prefixes=PREFIXES)) == []
+    assert len(filled.splitlines()) == len(found.sparql.splitlines())
+
+
+def test_each_query_of_the_library_is_sparql_as_it_stands(stored: StoredMap) -> None:
+    names = [known.name for known in named_queries()]
+    assert len(names) >= 25
+    everything = Dataset.load([stored])
+    for known in named_queries():
+        assert known.about.endswith((".", ")")) or known.about
+        everything.ask(known.sparql)
+
+
+def test_a_value_that_nothing_is_called_is_told_with_names_near_it(stored: StoredMap) -> None:
+    everything = Dataset.load([stored])
+    support = named_query("on-support")
+    check_known(everything.store, support, {"support": "n1"}, stored.base)
+    with pytest.raises(QueryError, match="support=n11: nothing is called that; near it: n1"):
+        check_known(everything.store, support, {"support": "n11"}, stored.base)
+    assert everything.ask(support.filled({"support": "n1"})).cells()[0][:2] == (
+        "scene:n2",
+        "afn:Mug",
+    )
 
 
 def test_an_unknown_name_lists_the_library() -> None:
     with pytest.raises(QueryError, match="@containers-on-supports"):
-        named_query("@nothing")
+        named_query("@containers-on-support")
     with pytest.raises(QueryError, match="no named query"):
         named_query("@../vocabulary")
 
@@ -232,3 +274,40 @@ def test_a_hidden_service_is_refused(hidden: str) -> None:
     prefixes = "PREFIX : <http://127.0.0.1:1/> PREFIX a: <urn:a#> "
     with pytest.raises(QueryError, match="SERVICE"):
         refuse_writing(f"{prefixes} SELECT * {{ {hidden} }}")
+
+
+def test_a_query_that_takes_too_long_is_given_up(stored: StoredMap) -> None:
+    slow = "SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f FILTER(STR(?c) < STR(?f)) }"
+    with pytest.raises(QueryError, match=r"no answer within 0\.001 s"):
+        query([stored], slow, timeout_s=0.001)
+    assert query([stored], "ASK { ?r a afn:Room }", timeout_s=60).truth
+
+
+@pytest.mark.parametrize("form", ["csv", "tsv", "json", "xml"])
+def test_each_form_reads_back_the_same(stored: StoredMap, form: str) -> None:
+    from pyoxigraph import QueryResultsFormat, parse_query_results
+
+    asked = "SELECT ?n ?label ?x { ?n rdfs:label ?label OPTIONAL { ?n afn:x ?x } } ORDER BY ?n"
+    answer = query([stored], asked)
+    formats = {
+        "csv": QueryResultsFormat.CSV,
+        "tsv": QueryResultsFormat.TSV,
+        "json": QueryResultsFormat.JSON,
+        "xml": QueryResultsFormat.XML,
+    }
+    if form == "csv":
+        assert len(list(csv.reader(io.StringIO(answer.text(form))))) == len(answer.rows) + 1
+        return
+    parsed = parse_query_results(answer.text(form).encode(), format=formats[form])
+    assert [tuple(row) for row in parsed] == list(answer.rows)  # type: ignore[union-attr]
+
+
+def test_triples_are_written_in_each_form(stored: StoredMap) -> None:
+    from pyoxigraph import RdfFormat, parse
+
+    answer = query([stored], "DESCRIBE scene:n1")
+    for form, read in (("nt", RdfFormat.N_TRIPLES), ("xml", RdfFormat.RDF_XML)):
+        quads = parse(answer.text(form).encode(), format=read)
+        assert len(list(quads)) == len(answer.rows)
+    assert answer.text("csv").startswith("subject,predicate,object")
+    assert query([stored], "ASK {}").text("csv") == "answer\ntrue\n"
