@@ -100,6 +100,7 @@ def text_of(query: str) -> str:
     """The SPARQL text of a query, or of a named one (`@name`, `@name parameter=value …`)."""
     if not query.lstrip().startswith("@"):
         return query
-    from afkb.store.named import named_query
+    from afkb.store.named import named_query, read_values
 
-    return named_query(query.strip()).sparql
+    name, *values = query.split()
+    return named_query(name).filled(read_values(values))

@@ -150,7 +150,7 @@ def _names(store: Store, base: str) -> list[str]:
 
 def _local(name: str) -> str:
     """A name as the local part of a prefixed name: what has a meaning there is escaped."""
-    return re.sub(r"([~.!$&'()*+,;=/?#@])", r"\\\1", escaped(name))
+    return re.sub(r"(^-|[~.!$&'()*+,;=/?#@])", r"\\\1", escaped(name))
 
 
 def _read(path: Path) -> NamedQuery:
