@@ -27,8 +27,8 @@ format: $(VENV)/.dev  ## mend what the formatter can mend
 pictures: $(VENV)/.dev  ## make the pictures in the documents again
 	$(BIN)/afkb demo --out demo-map
 	$(BIN)/afkb map world:paper_home --out demo-map-early --stop 6
-	$(BIN)/python scripts/picture.py demo-map docs/demo-map.svg edges ids
-	$(BIN)/python scripts/picture.py demo-map-early docs/early-map.svg edges ids
+	$(BIN)/python scripts/picture.py demo-map docs/demo-map.svg edges ids past
+	$(BIN)/python scripts/picture.py demo-map-early docs/early-map.svg edges ids past
 	$(BIN)/afkb detect world:paper_home --frame 51 --pictures demo-map-early
 	cp demo-map-early/frame-000051.png docs/detected.png
 	$(BIN)/python -m bench.mapping deceived_hall --picture docs/deceived.svg

@@ -177,6 +177,22 @@ def test_the_library_is_at_hand(served) -> None:
     assert served.locator(".lights .room").count() == 2
 
 
+def test_a_querys_parameters_are_fields_and_take_the_chosen_node(served) -> None:
+    served.locator("#sparql").fill(
+        "SELECT ?thing ?z { VALUES ?thing { scene:n1 }  # parameter, scene: the thing's id\n"
+        "?thing afn:z ?z }"
+    )
+    field = served.locator(".parameters input")
+    assert field.input_value() == "n1"
+    on_plan(served, "n2").dispatch_event("click")
+    assert "{ scene:n2 }" in served.locator("#sparql").input_value()
+    served.get_by_role("button", name="Ask").click()
+    served.wait_for_selector(".answer tbody tr")
+    assert served.locator(".answer tbody tr").inner_text().startswith("n2")
+    field.fill("n2 } DROP ALL")
+    assert "{ scene:n2 }" in served.locator("#sparql").input_value()
+
+
 def test_time_can_be_turned_back(served) -> None:
     slider = served.locator("#moment")
     slider.focus()

@@ -2,6 +2,7 @@
 
 import { element } from "./dom.js";
 import { ask, askJson } from "./fetching.js";
+import { letFill } from "./parameters.js";
 
 const SHOWN = 500;
 // What is asked along with one map: the ontology, and what follows from it.
@@ -19,6 +20,7 @@ export function letAsk(section, shown) {
   const stop = section.querySelector(".stop"), status = section.querySelector(".answered");
   const place = section.querySelector(".answer"), only = section.querySelector("#this-map");
   const found = new Map();
+  const parameters = letFill(section.querySelector(".parameters"), box);
   let running = null;
   box.value = GREETING;
 
@@ -32,10 +34,10 @@ export function letAsk(section, shown) {
     const query = found.get(library.value);
     about.textContent = query?.about || "";
     if (query) box.value = query.sparql;
+    parameters.show();
+    if (shown().board?.chosen) parameters.choose(shown().board.chosen);
   });
-  box.addEventListener("input", () => {
-    if (box.value !== found.get(library.value)?.sparql) library.value = "";
-  });
+  box.addEventListener("input", () => parameters.show());
   box.addEventListener("keydown", (event) => {
     if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) form.requestSubmit();
   });
@@ -44,6 +46,10 @@ export function letAsk(section, shown) {
     event.preventDefault();
     answer();
   });
+
+  // `scene:` is for nodes of the map that is shown, whichever the server holds for the first.
+  const text = () => (/\bscene:/.test(box.value) && !/prefix\s+scene:/i.test(box.value)
+    ? `PREFIX scene: <${shown().base}> ${box.value}` : box.value);
 
   async function answer() {
     running?.abort();
@@ -56,7 +62,7 @@ export function letAsk(section, shown) {
     const asked = only.checked && !only.closest("label").hidden ? [shown().graph, ...KNOWN] : [];
     const graphs = new URLSearchParams(asked.map((graph) => ["default-graph-uri", graph]));
     try {
-      const got = await ask(`sparql?${graphs}`, { method: "POST", body: box.value, signal: mine.signal,
+      const got = await ask(`sparql?${graphs}`, { method: "POST", body: text(), signal: mine.signal,
         headers: { "Content-Type": "application/sparql-query", Accept: ACCEPTED } });
       const type = got.headers.get("Content-Type") || "";
       const result = type.includes("json") ? await got.json() : await got.text();
@@ -112,6 +118,7 @@ export function letAsk(section, shown) {
   // Marks the rows that tell of a node, and brings the first of them into view.
   return {
     mark(id) {
+      if (id) parameters.choose(id);
       let first = null;
       for (const row of place.querySelectorAll("tbody tr")) {
         const tells = nodesIn(row).includes(id);
