@@ -56,23 +56,23 @@ def reproduced(
     folder = out / f"scenario-{scenario.number}"
     made = make_map(host, Settings(uri=uri, out=folder), progress)
     if made.interrupted is not None:
-        raise SourceError(f"{uri}: interrupted; run it again")
-    outcome = measured(Judged.of(made.topological_map, truth), folder, host)
+        raise KeyboardInterrupt  # Its map holds what was seen; half a scenario is not judged.
+    steps = Steps.of(folder, host)
+    outcome = measured(Judged.of(made.topological_map, truth), folder, steps)
     table = list(rows(scenario.paper, outcome))
     title = f"Scenario {scenario.number}: {scenario.title}"
     drawn = out / f"scenario-{scenario.number}.html"
-    steps, camera = Steps.of(folder, host), Camera.of(host, uri)
+    camera = Camera.of(host, uri)
     drawn.write_text(sheet(title, uri, table, outcome, steps, camera), encoding="utf-8")
     return Reproduced(scenario, uri, folder, drawn, table)
 
 
-def measured(judged: Judged, folder: Path, host: PluginHost) -> Outcome:
+def measured(judged: Judged, folder: Path, steps: Steps) -> Outcome:
     """All measures of a map in a folder, made of a recording whose truth is known."""
-    steps = Steps.of(folder, host)
     return Outcome(
         judged,
         judged_rooms(judged.found, judged.truth),
         hidden_things(judged, steps, read_grid(folder)),
         list(moved_things(judged, steps)),
-        fetched(judged, folder, host.knowledge_base),
+        fetched(judged, folder, steps.host.knowledge_base),
     )

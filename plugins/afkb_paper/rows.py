@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -137,14 +138,15 @@ def _hidden(paper: Figures, hidden: Sequence[Hidden]) -> Row:
 
 
 def _moved(paper: Figures, moved: Sequence[Moved]) -> Row:
+    entered = [m for m in moved if m.matching_weight is not None or m.left]
     told = "; ".join(
-        f"{m.name}: weight {UNTOLD if m.matching_weight is None else f'{m.matching_weight:.2f}'}, "
+        f"{m.name}: weight {m.matching_weight or math.nan:.2f}, "
         + (f"still there as {', '.join(m.left)}" if m.left else "no node left")
         + f", robot off by {m.off_m:.2f} m at most after it had gone"
-        for m in moved
+        for m in entered
     )
-    ignored = sum(not m.left for m in moved)
-    ours = f"{ignored} of {len(moved)} gone" if moved else "nothing was moved"
+    gone = sum(not m.left for m in entered)
+    ours = f"{gone} of {len(entered)} gone" if entered else "none was entered"
     how = BY_TRUTH + (f"; {told}" if told else "")
     value = [
         {

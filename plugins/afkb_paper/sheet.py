@@ -44,8 +44,9 @@ def _table(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _steps(found: TopologicalMap, steps: Steps, camera: Camera, frame: Frame) -> Iterator[str]:
-    for number, (place, moment) in enumerate(moments(found), start=1):
-        then = steps.until(moment)
+    drawn = moments(found)
+    for number, (place, moment) in enumerate(drawn, start=1):
+        then = steps.until(moment) if number < len(drawn) else found
         seen = steps.view_at(place, place.stamp, moment)
         picture = camera.picture(seen.view.index, seen.T_map_base) if seen else NOTHING_SEEN
         panels = (picture, graph_panel(then, frame), grid_panel(then, frame))
