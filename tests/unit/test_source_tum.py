@@ -318,8 +318,8 @@ def test_other_folders_are_left_to_other_sources(tmp_path: Path) -> None:
         assert afkb_open_source(uri, {}, None) is None  # type: ignore[arg-type]
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60)
-@given(st.text(max_size=200))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25)
+@given(st.text(max_size=80))
 def test_any_text_as_a_trajectory_is_counted_or_read(tmp_path: Path, text: str) -> None:
     path = tmp_path / "any.txt"
     path.write_text(text, encoding="utf-8")
