@@ -104,8 +104,12 @@ CHAPTERS = (
     ),
     Chapter(
         "The server",
-        "`afkb serve` under attack, crowded, and at everyday work ([serving](serving.md)).",
-        _parts("bench.serving", "attacks", "crowd", "everyday"),
+        "`afkb serve` under attack, crowded, and at everyday work ([serving](serving.md)), and its "
+        "page at work in a browser.",
+        (
+            *_parts("bench.serving", "attacks", "crowd", "everyday"),
+            Measurement("page", "python -m bench.page"),
+        ),
     ),
     Chapter(
         "What maps weigh",
@@ -122,7 +126,7 @@ CHAPTERS = (
         "Killed at random moments",
         "Kill -9 during mapping, updating, a batch and an upload; afterwards every folder and "
         "every graph is the old one or the new one.",
-        _parts("bench.endurance", "maps", "updates", "batches", "uploads"),
+        _parts("bench.endurance", "writing", "maps", "updates", "batches", "uploads"),
     ),
     Chapter(
         "The ontology",
