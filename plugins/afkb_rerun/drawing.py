@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from afkb.flow import EdgeKind, Entity, OccupancyGrid, TopologicalMap
-from afkb_mapping.exporting.describing import NO_ROOM_CATEGORY, box_of, likeliest
+from afkb_mapping.exporting.describing import NO_ROOM_CATEGORY, box_of, is_predicted, likeliest
 from afkb_rerun.stream import STAMPS, rerun
 
 SEEN, MOVABLE, EXPECTED = (128, 128, 128), (210, 140, 40), (70, 130, 220)
@@ -81,8 +81,8 @@ def _log_strips(
 def _draw_entity(stream: Any, entity: Entity) -> None:
     rr, box = rerun(), box_of(entity)
     dynamic = entity.movability == "Dynamic"
-    group = "expected" if entity.predicted_from else "dynamic" if dynamic else "observed"
-    color = EXPECTED if entity.predicted_from else MOVABLE if dynamic else SEEN
+    group = "expected" if is_predicted(entity) else "dynamic" if dynamic else "observed"
+    color = EXPECTED if is_predicted(entity) else MOVABLE if dynamic else SEEN
     label = f"{likeliest(entity.category_belief)} {entity.existence:.2f}"
     shown = rr.Boxes3D(
         centers=[box.center_xyz],

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from afkb.flow import Entity, RobotPlace, Room
-from afkb_mapping.exporting.describing import NO_ROOM_CATEGORY, box_of, likeliest
+from afkb_mapping.exporting.describing import NO_ROOM_CATEGORY, box_of, is_predicted, likeliest
 
 Json = dict[str, Any]
 Triple = Sequence[float]
@@ -34,11 +34,11 @@ def object_json(id_: int, entity: Entity, labels: Sequence[str]) -> Json:
     """A thing; `labels`: the label space of objects."""
     box = box_of(entity)
     category = likeliest(entity.category_belief)
-    colour = _BLUE if entity.predicted_from else _GREY
+    colour = _BLUE if is_predicted(entity) else _GREY
     told = _semantic(entity.position_xyz, category, labels.index(category), colour)
     told |= {
         "type": "ObjectNodeAttributes",
-        "is_predicted": bool(entity.predicted_from),
+        "is_predicted": is_predicted(entity),
         "last_update_time_ns": _nanoseconds(entity.last_seen),
         "bounding_box": _box(box.center_xyz, box.size_xyz, box.yaw),
         "mesh_connections": [],
@@ -47,7 +47,7 @@ def object_json(id_: int, entity: Entity, labels: Sequence[str]) -> Json:
         "metadata": {
             "id": entity.id,
             "kind": entity.kind.value,
-            "predicted": bool(entity.predicted_from),
+            "predicted": is_predicted(entity),
             "predicted_from": list(entity.predicted_from),
             "existence": entity.existence,
             "movability": entity.movability,

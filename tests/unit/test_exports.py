@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -22,7 +23,7 @@ from afkb_geojson.anchor import Anchor
 from afkb_mapping.exporting.export import export_map, formats
 from afkb_mapping.grid.map_server import IMAGE, SETTINGS
 from afkb_nav2.exporter import Nav2Exporter
-from store_samples import Names, sample_map
+from store_samples import Names, entity, sample_map
 
 HOST = PluginHost()
 
@@ -265,6 +266,20 @@ def command(*arguments: object) -> Result:
     return CliRunner().invoke(build_cli(HOST), ["export", *map(str, arguments)])
 
 
+def test_what_was_seen_is_not_predicted_though_it_follows_from_others(tmp_path: Path) -> None:
+    spark_dsg = pytest.importorskip("spark_dsg")
+    mug, table = (entity(i, predicted_from=f) for i, f in (("n2", ()), ("n1", ("n2",))))
+    whole = replace(sample_map(), entities=(table, mug), past_predictions=(), edges=())
+    folder = write_map(tmp_path / "m", whole, {}, [Nav2Exporter()], Names())
+    (file,) = exported(folder, tmp_path / "m.json", "spark-dsg")
+    scene = spark_dsg.DynamicSceneGraph.load(str(file))
+    assert not any(n.attributes.is_predicted for n in scene.get_layer(2).nodes)
+    (file,) = exported(folder, tmp_path / "m.graphml", "graphml")
+    graph = nx.read_graphml(file)
+    assert graph.nodes["n1"]["predicted"] is False
+    assert graph.edges["n1", "n2"]["relation"] == "predicted_from"
+
+
 def test_the_command_writes_lists_and_refuses(folder: Path, tmp_path: Path) -> None:
     done = command(folder, "--to", "csv", "--out", tmp_path / "t", "--json")
     told = json.loads(done.stdout)
@@ -313,8 +328,6 @@ def test_bad_input_gets_one_line_and_leaves_nothing(folder: Path, tmp_path: Path
 
 
 def test_a_map_of_nothing_is_written_in_every_format(tmp_path: Path) -> None:
-    from dataclasses import replace
-
     names = ("places", "entities", "bounds", "doorways", "rooms", "edges", "closures")
     empty = replace(sample_map(), past_predictions=(), loops=(), **dict.fromkeys(names, ()))
     folder = write_map(tmp_path / "empty", empty, {}, [Nav2Exporter()], Names())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from afkb.flow import Bound, Doorway, Entity, OrientedBox, RobotPlace, Room
+from afkb.flow import Bound, Doorway, Entity, NodeKind, OrientedBox, RobotPlace, Room
 
 Flat = dict[str, str | float | int | bool]
 
@@ -17,6 +17,11 @@ NO_CATEGORY, NO_ROOM_CATEGORY = "SomethingElse", "UnknownRoom"
 def likeliest(belief: Mapping[str, float], else_: str = NO_CATEGORY) -> str:
     """The name of the greatest probability, the first of equals by name; `else_` where none is."""
     return min(belief, key=lambda name: (-belief[name], name), default=else_)
+
+
+def is_predicted(entity: Entity) -> bool:
+    """Whether it is expected and was not seen; what was seen may follow from other things too."""
+    return entity.kind is not NodeKind.OBSERVED
 
 
 def box_of(entity: Entity) -> OrientedBox:
@@ -62,7 +67,7 @@ def flat_entity(entity: Entity) -> Flat:
         "first_seen": entity.first_seen,
         "last_seen": entity.last_seen,
         "extent_known": entity.extent_known,
-        "predicted": bool(entity.predicted_from),
+        "predicted": is_predicted(entity),
     }
     return told | _given(
         room=entity.room,
