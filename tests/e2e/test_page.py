@@ -41,6 +41,9 @@ CONTRAST = """() => {
       return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05); }));
 }"""
 
+pytestmark = pytest.mark.xdist_group("page")
+"""One browser and one server serve all of them."""
+
 if CHROMIUM is None:
     pytest.skip("no Chromium; see scripts/chromium.sh", allow_module_level=True)
 
