@@ -5,14 +5,19 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 
 from afkb.fleet import Server, kept_maps
-from afkb.store import load
+from afkb.knowledge import AfNet
+from afkb.store import load, write_map
+from afkb.store.made_with import ontology_record
+from afkb_mapping.run_record import Settings
 from laser_samples import FLAT, ranges
 from oxigraph_server import oxigraph_server
+from store_samples import Names, sample_map
 
 BEAMS = 181
 
@@ -38,20 +43,30 @@ def batch(*arguments: object) -> tuple[int, dict[str, dict[str, object]], str]:
     return done.returncode, {found["name"]: found for found in told["maps"]}, done.stderr
 
 
+def map_of(source: Path, folder: Path) -> int:
+    """A map as an earlier batch left it; when it was written."""
+    settings = Settings(uri=str(source), out=folder)
+    parameters = {f.name: getattr(settings, f.name) for f in fields(settings)}
+    told = {name: parameters[name] for name in parameters if name not in ("uri", "out", "view")}
+    run = {"source": str(source), "parameters": told, "ontology": ontology_record(AfNet().files)}
+    return (write_map(folder, sample_map(), run, [], Names()) / "run.json").stat().st_mtime_ns
+
+
 def test_one_failure_stops_no_other_and_what_is_done_is_kept_and_not_done_again(tmp_path):
     log, out = tmp_path / "drive.log", tmp_path / "maps"
     write_drive(log)
+    written = map_of(tmp_path / "data", out / "done")
+    map_of(tmp_path / "elsewhere", out / "taken")
     with oxigraph_server(tmp_path / "data") as process:
-        common = (log, "--out", out, "--store", process.url, "--prefix", "north")
-        code, first, said = batch("gone=/nowhere", *common, "--workers", 2)
-        assert code == 1 and "2/2" in said
-        assert first["gone"]["error"] == "/nowhere: no such file or folder"
-        assert not (out / "gone").exists()
-        assert first["drive"]["state"] == "mapped" and first["drive"]["frames"] == 4
-        written = (out / "drive" / "run.json").stat().st_mtime_ns
-        code, again, _ = batch(*common, "--resume")
-        assert code == 0 and again["drive"]["state"] == "skipped"
-        assert (out / "drive" / "run.json").stat().st_mtime_ns == written
-        assert again["drive"]["stored"] == first["drive"]["stored"] == "urn:afkb:map:north/drive"
-        assert [k.name for k in kept_maps(Server.find(process.url))] == ["north/drive"]
+        sources = (f"taken={tmp_path}", log, f"done={tmp_path / 'data'}")
+        store = ("--store", process.url, "--prefix", "north")
+        code, found, said = batch(*sources, "--out", out, "--resume", "--workers", 1, *store)
+        kept = [k.name for k in kept_maps(Server.find(process.url))]
+    assert code == 1 and "3/3" in said
+    assert f"is a map of {tmp_path / 'elsewhere'}" in found["taken"]["error"]
+    assert (found["drive"]["state"], found["drive"]["frames"]) == ("mapped", 4)
     assert load(out / "drive").kinds["RobotPlace"] > 0
+    assert found["done"]["state"] == "skipped"
+    assert (out / "done" / "run.json").stat().st_mtime_ns == written
+    assert kept == ["north/done", "north/drive"]
+    assert found["drive"]["stored"] == "urn:afkb:map:north/drive"
