@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,11 @@ def load_mesh(path: Path, up: Up | None, unit_m: float, key: str) -> Mesh:
         raise SourceError(
             f"{key}: {path} holds no triangles; give a glTF, OBJ, PLY, STL or OFF mesh"
         )
+    if not np.ptp(vertices, axis=0).any():
+        raise SourceError(
+            f"{key}: {path}: all its corners are at one place, as where Draco compresses them; "
+            "export it without compression"
+        )
     if (up or ("y" if path.suffix.lower() in _Y_UP_FORMATS else "z")) == "y":
         vertices = vertices @ _Z_FROM_Y_UP.T
     return Mesh(np.ascontiguousarray(vertices), triangles)
@@ -40,6 +46,7 @@ def load_mesh(path: Path, up: Up | None, unit_m: float, key: str) -> Mesh:
 def _loaded(path: Path, key: str) -> Any:
     import trimesh
 
+    logging.getLogger("trimesh").addHandler(logging.NullHandler())  # what is wrong is told below
     try:
         scene = trimesh.load_scene(path, process=False, skip_materials=True)
         meshes = [g for g in scene.dump() if isinstance(g, trimesh.Trimesh) and len(g.faces)]

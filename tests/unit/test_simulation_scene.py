@@ -5,6 +5,7 @@ The files are written by trimesh's exporters.
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -155,6 +156,32 @@ def test_unreadable_files_are_refused(tmp_path: Path) -> None:
         refused = refusal(world(tmp_path, name))
         assert name in refused
         assert "scene.file" in refused
+
+
+def test_compressed_meshes_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Draco's corners are none that trimesh can read without its decoder."""
+    name = "KHR_draco_mesh_compression"
+    primitive = {"attributes": {"POSITION": 0}, "indices": 1}
+    compressed = {name: {"bufferView": 0, "attributes": {"POSITION": 0}}}
+    data = "data:application/octet-stream;base64,RFJBQ08CAgEBAAAAAAAAAAAA"
+    content = {
+        "asset": {"version": "2.0"},
+        "extensionsUsed": [name],
+        "extensionsRequired": [name],
+        "buffers": [{"uri": data, "byteLength": 18}],
+        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 18}],
+        "accessors": [
+            {"componentType": 5126, "count": 3, "type": "VEC3"},
+            {"componentType": 5123, "count": 3, "type": "SCALAR"},
+        ],
+        "meshes": [{"primitives": [primitive | {"extensions": compressed}]}],
+        "nodes": [{"mesh": 0}],
+        "scenes": [{"nodes": [0]}],
+        "scene": 0,
+    }
+    (tmp_path / "small.gltf").write_text(json.dumps(content))
+    assert "export it without compression" in refusal(world(tmp_path, "small.gltf"))
+    assert not capsys.readouterr().err
 
 
 def test_a_world_is_somewhere(tmp_path: Path) -> None:
