@@ -93,7 +93,8 @@ def places(m: TopologicalMap, radius: float) -> Iterator[str]:
             title = f"{edge.id}: {edge.distance:.2f} m, bearing {math.degrees(edge.bearing):.0f}°"
             yield _edge("way", edge, where, title)
     for place in m.places:
-        yield d.ray("heading", (place.x, place.y, place.yaw), (0.0, 2 * radius))
+        ahead = (place.x, place.y, place.yaw)
+        yield d.ray("heading", ahead, (0.0, 2 * radius), id_=place.id)
         title = f"{place.id}: robot place{f' in {place.room}' if place.room else ''}"
         yield d.circle("place", place.x, place.y, radius, title, place.id)
 
