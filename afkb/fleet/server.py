@@ -81,7 +81,7 @@ class Server:
                 if self._patiently(lambda at=address: works(at, self.timeout_s)):  # type: ignore[misc]
                     return address
             except Refusal as error:
-                if error.status in (401, 403):
+                if error.status == 401:
                     raise
                 refusals.append(str(error))
         why = f" ({refusals[-1]})" if refusals else ""
