@@ -8,6 +8,7 @@ const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDo
 // While the plan is moved it is only shifted and stretched as a picture, which costs nothing
 // however much is on it; when it has stood still so long it is drawn sharp again.
 const SHARP_AFTER_MS = 140;
+const SLOW_MS = 1000;
 
 export class Panning {
   // wheel: "always" zooms by the wheel, "ctrl" leaves the plain wheel to the page.
@@ -45,7 +46,11 @@ export class Panning {
     const times = before.perPixel / now.perPixel;
     this.sheet.style.transform = `translate(${dx}px, ${dy}px) scale(${times})`;
     clearTimeout(this.waiting);
-    this.waiting = setTimeout(() => this.#sharpen(), SHARP_AFTER_MS);
+    const since = performance.now() - (this.moved ?? -Infinity);
+    this.moved = performance.now();
+    // Where frames are slow, moves come seldom: drawing in between would make them slower still.
+    const wait = since < SLOW_MS ? Math.max(SHARP_AFTER_MS, 2.5 * since) : SHARP_AFTER_MS;
+    this.waiting = setTimeout(() => this.#sharpen(), wait);
   }
 
   #sharpen() {
