@@ -43,17 +43,17 @@ def reproduce(
     from afkb.errors import MapError
     from afkb_mapping.progress import shown_progress
     from afkb_paper.reproducing import reproduced
-    from afkb_paper.scenarios import SCENARIOS, sources
+    from afkb_paper.scenarios import sources
 
     host = state_of(ctx).host
-    asked = [s for s in SCENARIOS if not scenario or s.number in scenario]
-    found = sources(asked, None if worlds else _homes(data), host)
+    chosen = sources(None if worlds else _homes(data), host)
+    asked = {one: uri for one, uri in chosen.items() if not scenario or one.number in scenario}
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise MapError(f"{out}: can't be written ({error.strerror}); name another") from error
     results = []
-    for one, uri in found.items():
+    for one, uri in asked.items():
         with shown_progress() as progress:
             results.append(reproduced(host, one, uri, out, progress))
         if not json_:

@@ -153,7 +153,7 @@ def _moved(paper: Figures, moved: Sequence[Moved]) -> Row:
             "thing": m.name,
             "matching_weight": m.matching_weight and round(m.matching_weight, 3),
             "left": list(m.left),
-            "off_m": round(m.off_m, 4),
+            "off_m": None if math.isnan(m.off_m) else round(m.off_m, 4),
         }
         for m in moved
     ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,21 +59,20 @@ SCENARIOS = (
 )
 
 
-def sources(
-    scenarios: Sequence[Scenario], homes: Path | None, host: PluginHost
-) -> dict[Scenario, str]:
+def sources(homes: Path | None, host: PluginHost) -> dict[Scenario, str]:
     """What to map for each scenario: a home of the folder, else the world.
 
-    The home is the one with most nearly as many rooms as the paper's; none is taken twice.
+    The home is the one with most nearly as many rooms as the paper's; none is taken twice, and of
+    those that have as many the first by name is.
 
     Raises `SourceError` where a home's truth can't be read.
     """
     free = _homes(homes, host) if homes is not None else {}
     found = {}
-    for scenario in scenarios:
+    for scenario in SCENARIOS:
         found[scenario] = scenario.world
         if scenario.recorded and free:
-            nearest = min(free, key=lambda uri: (abs(free[uri] - scenario.paper.rooms), uri))
+            nearest = min(free, key=lambda uri: abs(free[uri] - scenario.paper.rooms))
             found[scenario] = nearest
             free.pop(nearest)
     return found

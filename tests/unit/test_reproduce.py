@@ -178,10 +178,10 @@ def test_each_scenario_gets_the_home_with_most_nearly_its_rooms(tmp_path: Path) 
         views = [{"stamp": i, "x": 0, "y": 0, "yaw": 0, "room": f"r_{i}"} for i in range(rooms)]
         told = json.dumps({"views": views, "things": []})
         (tmp_path / name / "truth.json").write_text(told)
-    chosen = [Path(uri).parent.name for uri in sources(SCENARIOS, tmp_path, HOST).values()]
+    chosen = [Path(uri).parent.name for uri in sources(tmp_path, HOST).values()]
     assert chosen[1:] == ["middling", "small"]
-    assert sources(SCENARIOS, tmp_path, HOST)[SCENARIOS[0]] == "world:paper_home"
-    assert set(sources(SCENARIOS, None, HOST).values()) == {s.world for s in SCENARIOS}
+    assert sources(tmp_path, HOST)[SCENARIOS[0]] == "world:paper_home"
+    assert set(sources(None, HOST).values()) == {s.world for s in SCENARIOS}
 
 
 class Surveyor:
@@ -202,5 +202,5 @@ def test_a_stranger_may_know_the_truth() -> None:
 
 def test_bad_input_is_one_line() -> None:
     with pytest.raises(SourceError, match="--data"):
-        sources(SCENARIOS, Path("/nowhere"), HOST)
+        sources(Path("/nowhere"), HOST)
     assert CliRunner().invoke(build_cli(HOST), ["reproduce", "--scenario", "4"]).exit_code == 2
