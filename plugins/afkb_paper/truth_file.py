@@ -2,12 +2,14 @@
 
 `views`: `stamp` (s), `x`, `y` (m), `yaw` (rad) of the base and `room`. `things`: `name`,
 `category`, `room`, `min` and `max` corners (m) of an upright box. Rooms are named by their
-category, a number behind it: `kitchen_0`.
+category, a number behind it: `kitchen_0`. Things that were scanned for a catalogue carry its number
+before their category: `025_mug`, `065-f_cups`.
 """
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -19,6 +21,7 @@ from afkb.flow import OrientedBox, TrueThing, TrueView, Truth
 from afkb.ontology.bundled import bundled_ontology
 
 FILE = "truth.json"
+_CATALOGUE = re.compile(r"^\d+(-[a-z])?_")
 
 
 def truth_beside(uri: str) -> Truth | None:
@@ -58,7 +61,8 @@ def _thing(told: Mapping[str, Any]) -> TrueThing:
     low, high = told["min"], told["max"]
     x, y, z = ((float(a) + float(b)) / 2 for a, b in zip(low, high, strict=True))
     sx, sy, sz = (float(b) - float(a) for a, b in zip(low, high, strict=True))
-    category = _names().categories.find("homes", told["category"]) or str(told["category"])
+    called = _CATALOGUE.sub("", str(told["category"]))
+    category = _names().categories.find("homes", called) or called
     return TrueThing(told["name"], category, OrientedBox((x, y, z), (sx, sy, sz)), told.get("room"))
 
 

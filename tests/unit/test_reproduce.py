@@ -152,6 +152,13 @@ def test_a_truth_file_is_told_in_the_ontologys_words() -> None:
     assert truth.things == (TrueThing("mug_1", "Mug", box, "kitchen_0"),)
 
 
+@pytest.mark.parametrize("called", ["mug", "025_mug", "065-f_cups"])
+def test_numbers_of_a_catalogue_are_no_part_of_a_category(called: str) -> None:
+    thing = TOLD["things"][0] | {"category": called}
+    truth = truth_of({"views": [], "things": [thing]})
+    assert truth.things[0].category in {"Mug", "Cup"}
+
+
 def test_the_truth_of_a_recording_lies_beside_it(tmp_path: Path) -> None:
     (tmp_path / "bag").mkdir()
     assert HOST.truth(str(tmp_path / "bag")) is None
