@@ -1,0 +1,1 @@
+"""SPARQL over mapped scenes, measured: see `python -m bench.sparql --help`."""
