@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 _HEAD = """PREFIX afn: <https://w3id.org/afkb/afnet#>
-PREFIX skos: <http://www.w3.org/2004/02/skos/core#>
+PREFIX prov: <http://www.w3.org/ns/prov#>
 PREFIX rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#>
 """
 
@@ -55,13 +55,13 @@ QUESTIONS: dict[str, tuple[str, str]] = {
           ?thing afn:affords ?seen ; afn:supportedBy ?support .
           ?support afn:affords ?expected }""",
     ),
-    "duals of what lies together": (
+    "predictions by a dual that came true": (
         DUAL,
-        """SELECT ?a ?b ?dual WHERE {
-          ?a afn:supportedBy ?on . ?b afn:supportedBy ?on .
+        """SELECT ?prediction ?dual ?thing ?anchor WHERE {
           ?dual rdf:type afn:Dual ; afn:evidence ?seen ; afn:predicted ?expected .
-          ?a afn:affords ?seen . ?b afn:affords ?expected .
-          FILTER (?a != ?b) }""",
+          ?prediction prov:wasDerivedFrom ?dual ; afn:confirmedBy ?thing ;
+                      afn:predictedFrom ?anchor .
+          ?thing afn:affords ?expected . ?anchor afn:affords ?seen }""",
     ),
 }
 
