@@ -43,7 +43,7 @@ pins: $(VENV)/.dev  ## write what is installed as the versions to test with
 	scripts/pin.sh $(BIN)/python
 
 clean:  ## remove the environment and what the targets made
-	rm -rf $(VENV) demo-map demo-map-early site
+	rm -rf $(VENV) demo-map demo-map-early demo-map-reproduced site
 
 $(VENV)/.default: $(SET_UP)
 	scripts/set-up.sh $(PYTHON) $(VENV) .

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 
-from afkb.asking.opened import OpenMap, open_map, text_of
+from afkb.asking.opened import OpenMap, answer_of, open_map
 from afkb.asking.values import Value, rows_of
 from afkb.store import Dataset
 
@@ -37,4 +37,4 @@ class Fleet:
 
     def ask(self, query: str) -> list[dict[str, Value]]:
         """Rows of Python values, as of `OpenMap.ask`, over all maps together."""
-        return rows_of(self.dataset.ask(text_of(query)))
+        return rows_of(answer_of(self.dataset, query))

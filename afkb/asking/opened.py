@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from afkb.asking.values import Value, rows_of
-from afkb.store import Dataset, StoredMap, load
+from afkb.store import Dataset, QueryResult, StoredMap, load
 from afkb.store.made_with import knowledge_of
 from afkb.store.shapes import doorways_json, nodes_json, rooms_json
 from afkb.store.vocabulary import MAP_NODES
@@ -74,7 +74,7 @@ class OpenMap:
 
         `QueryError`, with line and column, where it can't be answered.
         """
-        return rows_of(self.dataset.ask(text_of(query)))
+        return rows_of(answer_of(self.dataset, query))
 
     def find(self, thing: str) -> list[Region]:
         """Where such a thing is or would be, the likeliest place first.
@@ -96,11 +96,13 @@ class OpenMap:
         return f"OpenMap({str(self.folder)!r})"
 
 
-def text_of(query: str) -> str:
-    """The SPARQL text of a query, or of a named one (`@name`, `@name parameter=value …`)."""
+def answer_of(dataset: Dataset, query: str) -> QueryResult:
+    """The answer to a query, or to a named one (`@name`, `@name parameter=value …`)."""
     if not query.lstrip().startswith("@"):
-        return query
-    from afkb.store.named import named_query, read_values
+        return dataset.ask(query)
+    from afkb.store.named import check_known, named_query, read_values
 
-    name, *values = query.split()
-    return named_query(name).filled(read_values(values))
+    name, *words = query.split()
+    asked, values = named_query(name), read_values(words)
+    check_known(dataset.store, asked, values, dataset.prefixes["scene"])
+    return dataset.ask(asked.filled(values))

@@ -97,16 +97,17 @@ def query(
 
     Example: afkb query --map visit1 --map visit2 @room-beliefs --format csv
 
-    Example: afkb query --endpoint http://localhost:7878/query --graph urn:afkb:map:home @doorways
+    Example: afkb query --endpoint http://localhost:7878 --graph home @doorways
     """
     if list_named:
         _print_library(as_json)
         return
     asked = _asked(arguments or [], maps or [], file, endpoint)
-    named_graphs = [g if ":" in g else f"urn:afkb:map:{g}" for g in graphs or []]
+    named_graphs = [_graph(name) for name in graphs or []]
     if endpoint is not None:
         from afkb.store.sparql_remote import WAIT_S, query_endpoint
 
+        endpoint = _asked_at(endpoint)
         answer = query_endpoint(endpoint, asked.sparql, named_graphs, (), timeout or WAIT_S)
     else:
         ontology = [*state_of(ctx).host.knowledge_base.files, *(extensions or [])]
@@ -116,6 +117,26 @@ def query(
         print_table(answer.columns, answer.cells())
     else:
         print_text(answer.text(form.value))
+
+
+def _graph(name: str) -> str:
+    """The IRI of a graph: as it stands, or that of the map of this name."""
+    from afkb.store.vocabulary import map_graph
+
+    return name if name.startswith("urn:") or "://" in name else map_graph(name)
+
+
+def _asked_at(url: str) -> str:
+    """Where a server takes queries, which is found by asking if only its address is given."""
+    from urllib.parse import urlsplit
+
+    if urlsplit(url).path.strip("/"):
+        return url
+    from afkb.fleet import Server
+    from afkb.store.http import Address
+
+    found = Server.find(url, patience_s=0.0, to_write=False).query_at.url
+    return url.rstrip("/") + found.removeprefix(Address.read(url).url.rstrip("/"))
 
 
 def _answer(

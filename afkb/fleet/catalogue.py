@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from afkb.errors import MapError
 from afkb.fleet.server import Server
-from afkb.store.vocabulary import PREFIXES, escaped
+from afkb.store.vocabulary import PREFIXES, map_graph
 
 CATALOGUE = "urn:afkb:maps"
 """The graph that lists the maps."""
@@ -30,15 +30,6 @@ class KeptMap:
     triples: int
     sha256: str
     since: str
-
-
-def map_graph(name: str) -> str:
-    """The graph of a map of that name; `/` in it parts fleets, sites or robots.
-
-    >>> map_graph("north/flat 3")
-    'urn:afkb:map:north/flat%203'
-    """
-    return "urn:afkb:map:" + "/".join(escaped(part) for part in name.split("/"))
 
 
 def kept_maps(server: Server) -> list[KeptMap]:

@@ -16,10 +16,11 @@ from enum import StrEnum
 from pyoxigraph import Literal, Triple
 
 from afkb.errors import EndpointError
-from afkb.fleet.catalogue import CATALOGUE, PROLOGUE, kept_maps, map_graph, staged_for
+from afkb.fleet.catalogue import CATALOGUE, PROLOGUE, kept_maps, staged_for
 from afkb.fleet.server import Server
 from afkb.fleet.statements import digest_of, portions, statements_of
 from afkb.store import StoredMap
+from afkb.store.vocabulary import map_graph
 
 ATTEMPTS = 3
 """How often a map is sent before what the server makes of it is told as an error."""

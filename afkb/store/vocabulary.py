@@ -60,3 +60,12 @@ def escaped(name: str) -> str:
     """
     encoded = quote(name, safe="")
     return f"{encoded[:-1]}%2E" if encoded.endswith(".") else encoded
+
+
+def map_graph(name: str) -> str:
+    """The graph of a map of that name; `/` in it parts fleets, sites or robots.
+
+    >>> map_graph("north/flat 3")
+    'urn:afkb:map:north/flat%203'
+    """
+    return "urn:afkb:map:" + "/".join(escaped(part) for part in name.split("/"))

@@ -59,7 +59,8 @@ CHAPTERS = (
         "The paper's figures, ours, and how each was obtained "
         "([the paper, reproduced](paper-reproduced.md)).",
         (
-            Measurement("reproduce", "afkb reproduce --out reproduced"),
+            Measurement("reproduce-worlds", "afkb reproduce --worlds --out reproduced"),
+            Measurement("reproduce-homes", "afkb reproduce --data $AFKB_DATA --out reproduced"),
             Measurement("paper-home", "python -m bench.paper_home"),
         ),
     ),
@@ -69,7 +70,7 @@ CHAPTERS = (
         "measured on the same frames in the same run. What the words mean: "
         "[how well it works](how-well-it-works.md).",
         (
-            *_detectors("surfaces", "mosd", "kitchen", "containers", "doorways", "movability"),
+            *_detectors("surfaces", "mosd", "redkitchen", "containers", "doorways", "movability"),
             *_detectors("calibration", "robustness"),
             *_detectors("speed", repeats=3),
             Measurement("floor-plans", "python -m bench.floor_plans"),
@@ -100,15 +101,20 @@ CHAPTERS = (
         "Questions in SPARQL",
         "The same queries on the same 20,000 triples, with equal answers, beside rdflib, owlready2 "
         "and bare Oxigraph.",
-        (),
+        (
+            *_parts("bench.sparql", "peers", repeats=3),
+            *_parts("bench.sparql", "library"),
+            *_parts("bench.sparql", "startup", repeats=3),
+        ),
     ),
     Chapter(
         "The server",
         "`afkb serve` under attack, crowded, and at everyday work ([serving](serving.md)), and its "
         "page at work in a browser.",
         (
-            *_parts("bench.serving", "attacks", "crowd", "everyday"),
-            Measurement("page", "python -m bench.page"),
+            *_parts("bench.serving", "attacks"),
+            *_parts("bench.serving", "crowd", "everyday", repeats=3),
+            Measurement("page", "python -m bench.page", repeats=3),
         ),
     ),
     Chapter(

@@ -14,8 +14,8 @@ from typing import Any
 
 from afkb.plugins.host import PluginHost
 from afkb.store import load
+from afkb.store.stored_grid import read_grid
 from afkb_mapping.exporting.export import export_map, formats
-from afkb_mapping.routes.stored_grid import read_grid
 from bench.exports.maps import add_arguments, maps_of, timed, told
 
 __all__ = ["add_arguments", "run", "table"]

@@ -21,8 +21,8 @@ from typing import Any
 
 from afkb.plugins.host import PluginHost
 from afkb.store import load
+from afkb.store.stored_map import read_map
 from afkb_mapping.exporting.export import export_map
-from afkb_mapping.stored_map import read_map
 from bench.detectors.data import NoData
 from bench.exports.maps import add_arguments, maps_of, timed, told
 
@@ -34,7 +34,9 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     try:
         import spark_dsg  # noqa: F401 - asked for before any map is made
     except ImportError as error:
-        raise NoData("spark_dsg is not installed: pip install 'afkb[bench]'") from error
+        raise NoData(
+            "spark_dsg is not installed: pip install -c constraints.txt -e '.[bench]'"
+        ) from error
     host = PluginHost()
     with maps_of(args) as maps:
         return {name: _of_map(folder, host, args.repeats) for name, folder in maps.items()}

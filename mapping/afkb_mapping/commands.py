@@ -71,6 +71,9 @@ def map_(
         str | None,
         typer.Option(metavar="URL", help="Send the map to this SPARQL server; see `afkb store`."),
     ] = None,
+    prefix: Annotated[
+        str, typer.Option(metavar="NAME", help="With --store: put before the map's name there.")
+    ] = "",
     json_: Annotated[bool, typer.Option("--json", help="Print run.json's content.")] = False,
 ) -> None:
     """Turn a recording into a topological affordance map.
@@ -100,7 +103,7 @@ def map_(
         hours_later=hours_later,
         view=tuple(view or ()),
     )
-    keeper = Keeper.of(store, "", tell) if store else None
+    keeper = Keeper.of(store, prefix, tell) if store else None
     result = _run(host, settings)
     if json_:
         typer.echo(json.dumps(result.run, indent=2))

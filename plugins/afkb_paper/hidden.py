@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import NodeKind, PastPrediction, PredictionState, TopologicalMap, TrueThing
-from afkb_mapping.routes.stored_grid import StoredGrid
+from afkb.store.stored_grid import StoredGrid
 from afkb_paper.judged import Judged
 from afkb_paper.outlines import outline
 from afkb_paper.passing import Passing, points_around, ways_between

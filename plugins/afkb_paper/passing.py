@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from afkb.flow import OccupancyGrid
+from afkb.store.stored_grid import StoredGrid
 from afkb_mapping.routes.drivable import drivable
 from afkb_mapping.routes.grid_paths import GridPaths
 from afkb_mapping.routes.standing_points import SNAP_M
-from afkb_mapping.routes.stored_grid import StoredGrid
 
 if TYPE_CHECKING:
     from shapely import Polygon

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from afkb.errors import SourceError
 from afkb.plugins.host import PluginHost
-from afkb_mapping.routes.stored_grid import read_grid
+from afkb.store.stored_grid import read_grid
 from afkb_mapping.run import Progress, make_map
 from afkb_mapping.run_record import Settings
 from afkb_paper.fetching import fetched

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from afkb.flow import NodeKind, TopologicalMap
-from afkb_mapping.demo_table import transient_per_place
+from afkb_mapping.demo_table import new_transients, transient_per_place
 from afkb_paper.fetching import FETCHED, Fetched
 from afkb_paper.hidden import Hidden
 from afkb_paper.judged import Judged, return_errors
@@ -62,8 +62,7 @@ def rows(paper: Figures, outcome: Outcome) -> Iterator[Row]:
 def _transient(paper: Figures, found: TopologicalMap) -> Row:
     """Things that may move: those that a place adds to the graph, and those that are seen there."""
     what, told = "transient nodes per waypoint", paper.transient or UNTOLD
-    dynamic = sum(e.movability == "Dynamic" for e in found.entities)
-    new = round(dynamic / max(1, len(found.places)), 1)
+    new = round(new_transients(found), 1)
     seen = round(transient_per_place(found), 1)
     how = f"{FROM_MAP}: things that may move, over its places; mean in sight of one"
     value = {"new": new, "seen": seen}

@@ -1,4 +1,4 @@
-"""Exporter and viewer for Rerun, an extra: `pip install 'afkb[rerun]'`."""
+"""Exporter and viewer for Rerun, an extra: `rerun`."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def rerun() -> Any:
     except ImportError as error:
         raise PluginError(
             f"rerun needs a package that is not installed ({error.name or 'rerun'}); "
-            "get it with: pip install 'afkb[rerun]'"
+            "get it, in the checkout, with: pip install -c constraints.txt -e '.[rerun]'"
         ) from error
     return rerun
 

@@ -9,9 +9,11 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
+import cv2
 import networkx as nx
 import numpy as np
 import pytest
+import yaml
 from typer.testing import CliRunner, Result
 
 from afkb.cli.app import build_cli
@@ -62,6 +64,27 @@ def test_the_papers_form_has_places_only_and_the_grid(folder: Path, tmp_path: Pa
 def test_nav2_writes_again_what_the_map_folder_holds(folder: Path, tmp_path: Path) -> None:
     for file in exported(folder, tmp_path / "nav2", "nav2"):
         assert file.read_bytes() == (folder / file.name).read_bytes()
+
+
+def test_nav2_is_read_by_an_image_library_as_map_server_scales_it(
+    folder: Path, tmp_path: Path
+) -> None:
+    image, settings = exported(folder, tmp_path / "nav2", "nav2")
+    told = yaml.safe_load(settings.read_text())
+    grey = cv2.imread(str(image), cv2.IMREAD_UNCHANGED).astype(float)
+    occupied = (255 - grey) / 255 if not told["negate"] else grey / 255
+    cost = np.clip(
+        100 * (occupied - told["free_thresh"]) / (told["occupied_thresh"] - told["free_thresh"]),
+        0,
+        100,
+    )[::-1]
+    grid = sample_map().grid
+    known = np.isfinite(grid.probability)
+    assert told["mode"] == "scale" and told["resolution"] == pytest.approx(grid.resolution_m)
+    assert told["origin"][:2] == pytest.approx(list(grid.origin_xy))
+    assert (grey[::-1][~known] == 128).all() and not (grey[::-1][known] == 128).any()
+    assert (cost[known & (grid.probability > told["occupied_thresh"])] == 100).all()
+    assert (cost[known & (grid.probability < told["free_thresh"] - 1 / 255)] == 0).all()
 
 
 def test_spark_dsg_loads_layers_labels_boxes_and_what_is_predicted(

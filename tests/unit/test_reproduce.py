@@ -17,9 +17,9 @@ from afkb.errors import SourceError
 from afkb.flow import OccupancyGrid, OrientedBox, Room, TopologicalMap, TrueThing, TrueView, Truth
 from afkb.plugins import hookimpl
 from afkb.plugins.host import PluginHost
+from afkb.store.stored_grid import StoredGrid
 from afkb.testing import sample_map
 from afkb_mapping.geometry import T_from_xy_yaw
-from afkb_mapping.routes.stored_grid import StoredGrid
 from afkb_paper.judged import Judged, return_errors, stays
 from afkb_paper.moving import nodes_at
 from afkb_paper.passing import points_around, ways_between
