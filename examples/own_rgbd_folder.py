@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from afkb.flow import View
 from afkb.plugins.host import PluginHost
 from afkb_mapping.api import map_recording
+from afkb_mapping.source_options import options_of
 
 SUPPORTS = """
 SELECT ?thing ?height WHERE {
@@ -36,7 +37,7 @@ def look(folder: str, options: Mapping[str, str]) -> None:
 
 def main(folder: str, out: str, *words: str) -> None:
     """Map the folder; print each support with its height above the floor."""
-    options = dict(word.split("=", 1) for word in words)
+    options = options_of(words)
     look(folder, options)
     found = map_recording(folder, out, options=options)
     for row in found.ask(SUPPORTS):

@@ -11,6 +11,7 @@ from __future__ import annotations
 import sys
 
 from afkb_mapping.api import map_recording
+from afkb_mapping.source_options import options_of
 
 THINGS = """
 SELECT ?room (COUNT(?thing) AS ?things) WHERE {
@@ -21,7 +22,7 @@ SELECT ?room (COUNT(?thing) AS ?things) WHERE {
 
 def main(bag: str, out: str, *words: str) -> None:
     """Map the bag; print each room with what it is for and how many things were seen in it."""
-    found = map_recording(bag, out, options=dict(word.split("=", 1) for word in words))
+    found = map_recording(bag, out, options=options_of(words))
     for room in found.rooms():
         purpose, p = max(room["belief"].items(), key=lambda item: item[1])
         print(f"{room['id']}: {room['area']:.1f} m², {purpose} ({p:.2f})")

@@ -19,8 +19,8 @@ def main(folder: str, thing: str, start: str) -> None:
         print(f"after {metres:.1f} m, at ({x:.2f}, {y:.2f}): {place.probability:.2f}")
         for chance in place.found[:2]:
             print(f"    {chance.reason}")
-    best = open_map(folder).find(thing)[0]
-    print(f"likeliest of all: {best.node} ({best.probability:.2f}), {best.reason}")
+    for best in open_map(folder).find(thing)[:1]:
+        print(f"likeliest of all: {best.node} ({best.probability:.2f}), {best.reason}")
 
 
 if __name__ == "__main__":

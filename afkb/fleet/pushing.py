@@ -106,9 +106,9 @@ def _holds(server: Server, graph: str, parcel: _Parcel) -> bool:
 def _stage(server: Server, parcel: _Parcel) -> None:
     """Gather the statements aside; those that an earlier try brought there are not sent again."""
     there = server.count(parcel.staging)
-    if not there:
-        entry = f"<{parcel.staging}> dcterms:isVersionOf <{parcel.graph}>"
-        server.update(f"{PROLOGUE}INSERT DATA {{ GRAPH <{CATALOGUE}> {{ {entry} }} }}")
+    # Even if it is there: another who sends this map may have struck it off meanwhile.
+    entry = f"<{parcel.staging}> dcterms:isVersionOf <{parcel.graph}>"
+    server.update(f"{PROLOGUE}INSERT DATA {{ GRAPH <{CATALOGUE}> {{ {entry} }} }}")
     sent = 0
     for portion in portions(parcel.statements):
         sent += len(portion)
@@ -143,7 +143,7 @@ def put_in_place(parcel: _Parcel) -> str:
 
 def _clear(server: Server, parcel: _Parcel) -> None:
     """Drop what was gathered aside for this map, now or by programs that never came back."""
-    for staged in staged_for(server, parcel.graph):
+    for staged in dict.fromkeys([*staged_for(server, parcel.graph), parcel.staging]):
         server.update(
             f"{PROLOGUE}DROP SILENT GRAPH <{staged}> ; "
             f"DELETE WHERE {{ GRAPH <{CATALOGUE}> {{ <{staged}> dcterms:isVersionOf ?of }} }}"

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeVar
-from urllib.parse import urlencode
+from urllib.parse import urlencode, urlsplit
 
 from pyoxigraph import RdfFormat, Triple, parse
 
@@ -59,6 +59,9 @@ class Server:
         address = Address.read(url)
         if address.shows_credentials:
             tell(f"note: {address.url}: credentials go there unencrypted; prefer https")
+        apart = None if update_url is None else _of_updates(update_url, address)
+        if apart is not None and apart.shows_credentials and not address.shows_credentials:
+            tell(f"note: {apart.url}: credentials go there unencrypted; prefer https")
         base = address.url.removesuffix("/query").removesuffix("/sparql")
         asked = dict.fromkeys([address.url, f"{base}/query", f"{base}/sparql"])
         told = dict.fromkeys([f"{base}/update", f"{base}/statements", address.url])
@@ -66,9 +69,10 @@ class Server:
         query_at = first._first_that_works(list(asked), _answers, "answers no SPARQL query")
         if not to_write:
             return cls(query_at, query_at, patience_s, tell=tell)
-        updates = [Address.read(update_url).url] if update_url else list(told)
         what = "takes no SPARQL update; name where it does, or one that does (--update-url)"
-        update_at = first._first_that_works(updates, _takes_updates, what)
+        asking = first if apart is None else cls(apart, apart, patience_s, tell=tell)
+        updates = list(told) if apart is None else [apart.url]
+        update_at = asking._first_that_works(updates, _takes_updates, what)
         return cls(query_at, update_at, patience_s, tell=tell)
 
     def _first_that_works(
@@ -136,6 +140,13 @@ class Server:
                     self.tell(f"{error}; trying again in {pause:.1f} s")
                 time.sleep(pause)
                 wait = min(2 * wait, LONGEST_WAIT_S)
+
+
+def _of_updates(url: str, asked: Address) -> Address:
+    """Where updates go: with credentials of its own, or those of the other URL on the same host."""
+    given = Address.read(url)
+    same = urlsplit(given.url).hostname == urlsplit(asked.url).hostname
+    return asked.at(given.url) if same and urlsplit(url).username is None else given
 
 
 def _query(address: Address, sparql: str, accept: str, timeout_s: float) -> Reply:

@@ -13,6 +13,7 @@ import os
 import signal
 import socket
 import sys
+import traceback
 from contextlib import suppress
 from pathlib import Path
 
@@ -77,6 +78,8 @@ def _fork(kind: str, handle: int, control: socket.socket, shelf: Shelf, limits: 
                 control.close()
                 work(kind, channel, shelf, limits)
                 code = 0
+            except Exception:
+                traceback.print_exc()  # To the server's log; what is sealed has none.
             finally:
                 os._exit(code)
     return process

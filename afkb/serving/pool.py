@@ -168,8 +168,22 @@ class Pool:
             self._waiting -= 1
 
     async def _fork(self) -> _Worker:
-        process, line = await asyncio.to_thread(self._keeper.fork, self._kind)
+        forking = asyncio.ensure_future(asyncio.to_thread(self._keeper.fork, self._kind))
+        try:
+            process, line = await asyncio.shield(forking)
+        except asyncio.CancelledError:
+            forking.add_done_callback(self._abandon)
+            raise
         return _Worker(process, *await asyncio.open_unix_connection(sock=line))
+
+    def _abandon(self, forking: asyncio.Future[tuple[int, socket.socket]]) -> None:
+        """End a process whose client went away before it was there."""
+        if forking.cancelled() or forking.exception() is not None:
+            return
+        process, line = forking.result()
+        line.close()
+        ending = asyncio.ensure_future(asyncio.to_thread(self._keeper.end, process))
+        ending.add_done_callback(lambda done: done.cancelled() or done.exception())
 
     async def _end(self, worker: _Worker) -> int:
         """End a process; how it ended."""

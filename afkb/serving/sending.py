@@ -37,8 +37,12 @@ class Outgoing:
         self._bytes += number
 
 
+_PIECE = 1 << 16
+"""Bytes that are sent at once: the next ones go when the client has taken these."""
+
+
 class _Counted(Response):
-    """A response whose bytes count while it is sent."""
+    """A response that is sent piece by piece, whose bytes count until the client has taken them."""
 
     def __init__(self, outgoing: Outgoing, body: bytes, media: str) -> None:
         super().__init__(body, media_type=media, headers={"Vary": "Accept"})
@@ -46,8 +50,13 @@ class _Counted(Response):
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         self._outgoing.add(len(self.body))
+        begin = {"status": self.status_code, "headers": self.raw_headers}
         try:
-            await super().__call__(scope, receive, send)
+            await send({"type": "http.response.start", **begin})
+            for at in range(0, len(self.body), _PIECE):
+                piece = bytes(self.body[at : at + _PIECE])
+                await send({"type": "http.response.body", "body": piece, "more_body": True})
+            await send({"type": "http.response.body", "body": b"", "more_body": False})
         finally:
             self._outgoing.add(-len(self.body))
 

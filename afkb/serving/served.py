@@ -88,7 +88,7 @@ class Served:
             self._tell(f"a map changed on disk and can't be read; the old one is served: {error}")
             return
         loop = asyncio.get_running_loop()
-        drained = loop.time() + self.limits.seconds + self.limits.patience_s + 1.0
+        drained = loop.time() + max(self.limits.seconds, self.limits.telling_s) + 1.0
         self._old.append((drained, self.now))
         self.now = new
         self._tell("the maps changed on disk and were loaded anew")

@@ -6,10 +6,11 @@ import base64
 import os
 import re
 import socket
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from email.message import Message
-from http.client import HTTPException
+from http.client import HTTPException, HTTPResponse, InvalidURL
 from typing import IO
 from urllib.error import HTTPError, URLError
 from urllib.parse import unquote, urlsplit, urlunsplit
@@ -60,9 +61,12 @@ class Address:
         try:
             parts = urlsplit(url)
             host, port = parts.hostname, parts.port
-        except ValueError as error:
+        except ValueError:
             # The URL itself may hold a password: it is not repeated.
-            raise EndpointError(f"the server's URL can't be read: {error}") from error
+            raise EndpointError(
+                "the server's URL can't be read; percent-encode what is unusual in its user and "
+                "password"
+            ) from None
         if parts.scheme not in ("http", "https") or not host:
             raise EndpointError(
                 f"{parts.scheme or 'that'}://…: not the URL of a server; "
@@ -116,12 +120,34 @@ def post(
     around = [ProxyHandler({})] if address.is_loopback else []
     try:
         with build_opener(_Stay, *around).open(request, timeout=timeout_s) as answer:
-            return Reply(answer.headers.get_content_type(), answer.read())
+            return Reply(answer.headers.get_content_type(), _whole(answer, timeout_s))
     except HTTPError as error:
         with error:
             raise _refused(address, error) from None
+    except (ValueError, InvalidURL):
+        told = f"{address.url!a}: not a URL that HTTP can carry; percent-encode what is unusual"
+        raise EndpointError(told) from None
     except (URLError, OSError, HTTPException) as error:
         raise _unreachable(address, error, timeout_s) from None
+
+
+def _whole(answer: HTTPResponse, timeout_s: float) -> bytes:
+    """The body; `TimeoutError` where it has not come whole in time, however steadily it drips."""
+    until = time.monotonic() + timeout_s
+    parts = []
+    while part := answer.read1(1 << 16):
+        parts.append(part)
+        if time.monotonic() > until:
+            raise TimeoutError
+    return b"".join(parts)
+
+
+def _header_word(token: str) -> str:
+    """A token without the line break that files of secrets end in; `EndpointError` for no token."""
+    word = token.strip()
+    if not word.isascii() or not word.isprintable():
+        raise EndpointError("AFKB_STORE_TOKEN: no header can carry that; is it the token alone?")
+    return word
 
 
 class _Stay(HTTPRedirectHandler):
@@ -136,7 +162,7 @@ def _authorization(
 ) -> str | None:
     if user is None:
         if token := environment.get("AFKB_STORE_TOKEN"):
-            return f"Bearer {token}"
+            return f"Bearer {_header_word(token)}"
         user, password = environment.get("AFKB_STORE_USER"), environment.get("AFKB_STORE_PASSWORD")
         if not user:
             return None

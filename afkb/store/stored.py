@@ -23,7 +23,7 @@ RUN_FILE = "run.json"
 
 def load(folder: Path | str) -> StoredMap:
     """The map in a folder that `afkb map` wrote; `MapError` if there is none or it is broken."""
-    folder = Path(folder)
+    folder = Path(folder).expanduser()
     path = folder / SCENE_FILE
     if not folder.exists():
         raise MapError(f"{folder}: no such map; `afkb map SOURCE --out {folder}` writes one")

@@ -62,7 +62,12 @@ def _run(line: str, folder: Path, environment: Mapping[str, str]) -> _Run:
     said = folder / "said", folder / "errors"
     begun = time.perf_counter()
     with said[0].open("w") as out, said[1].open("w") as errors:
-        process = subprocess.Popen(words, cwd=folder, env=environment, stdout=out, stderr=errors)
+        try:
+            process = subprocess.Popen(
+                words, cwd=folder, env=environment, stdout=out, stderr=errors
+            )
+        except OSError as error:
+            raise NotMeasured(f"{line}: {error.strerror}") from error
         _, status, usage = os.wait4(process.pid, 0)
     if os.waitstatus_to_exitcode(status) != 0:
         raise NotMeasured(f"{line}: {said[1].read_text().strip()[-500:]}")

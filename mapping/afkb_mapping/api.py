@@ -81,7 +81,7 @@ def _made(
     asked = Settings(uri=str(source), out=out, options=dict(options or {}), **settings)
     if make_map(host, asked, progress).interrupted is not None:
         raise KeyboardInterrupt(f"{out} holds what was seen until then")
-    return open_map(out)
+    return open_map(asked.out)
 
 
 def route(folder: str | Path, start: str, goal: str, robot_radius_m: float = 0.2) -> Route:
@@ -115,7 +115,7 @@ def _ends(folder: str | Path, *names: str) -> tuple[RouteMap, list[End], AfNet]:
     from afkb_mapping.routes.ends import end_of
     from afkb_mapping.routes.route_map import RouteMap
 
-    known, kb = RouteMap.read(Path(folder)), open_map(folder).knowledge_base
+    known, kb = RouteMap.read(Path(folder).expanduser()), open_map(folder).knowledge_base
     return known, [end_of(name, known, kb) for name in names], kb
 
 
@@ -123,4 +123,4 @@ def changes(earlier: str | Path, later: str | Path) -> Difference:
     """What moved, vanished and appeared between two maps of one place, or two visits."""
     from afkb_mapping.visits.diff import diff
 
-    return diff(Path(earlier), Path(later))
+    return diff(Path(earlier).expanduser(), Path(later).expanduser())

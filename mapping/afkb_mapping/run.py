@@ -72,9 +72,9 @@ def make_map(
             source = host.open_source(settings.uri, settings.options)
             selection = Selection(source, settings.frames)
             check_continuing(host, settings)
-            audience = Audience.of(host, settings.view, settings.uri)
         with stages.timed("begin"):
             beginning = beginning_of(settings, selection)
+            audience = Audience.of(host, settings.view, settings.uri)
         crew = Crew.of(host, settings, stages, beginning.memory, beginning.recollection, audience)
         way = _Way(crew, beginning.visit)
         for done in way.along(beginning.placed_views(selection, stages)):

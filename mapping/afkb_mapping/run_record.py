@@ -54,6 +54,9 @@ class Settings:
     hours_later: float | None = None
     view: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "out", self.out.expanduser())
+
     @property
     def frames(self) -> FrameRange:
         """Which frames of the recording are used."""

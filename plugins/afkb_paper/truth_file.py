@@ -35,7 +35,7 @@ def truth_beside(uri: str) -> Truth | None:
         return None
     try:
         return truth_of(json.loads(paths[0].read_text(encoding="utf-8")))
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise SourceError(
             f"{paths[0]}: no truth of a home: {error!r}; mend or remove it"
         ) from error

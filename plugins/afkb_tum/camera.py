@@ -46,6 +46,9 @@ _Loader.add_constructor(
 )
 
 
+_NAMED = re.compile(r"freiburg([123])")
+
+
 def find_calibration(
     folder: Path, given: Intrinsics | None, size: tuple[int, int]
 ) -> tuple[PinholeCamera, bool, float | None, str | None]:
@@ -61,8 +64,10 @@ def find_calibration(
         where, mend, values = "option intrinsics", "give it as intrinsics=fx,fy,cx,cy", given
     elif file is not None:
         where, mend, values = str(stated), _MEND, (file.fx, file.fy, file.cx, file.cy)
-    elif intrinsics_file(folder) is not None:
-        return find_intrinsics(folder, None, size), False, None, None
+    elif (text := intrinsics_file(folder)) is not None and _is_meant(text, folder):
+        above = text.parent.resolve() != folder.resolve()
+        note = f"intrinsics are from {text.name}, one folder up" if above else None
+        return find_intrinsics(folder, None, size), False, None, note
     else:
         camera, note = _by_name(folder, size)
         return camera, False, None, note
@@ -70,8 +75,13 @@ def find_calibration(
     return camera_of(where, mend, (fx, abs(fy), cx, cy), size), fy < 0, scale, None
 
 
+def _is_meant(text: Path, folder: Path) -> bool:
+    """Not another data set's file one folder up, where the folder's name tells its camera."""
+    return text.parent.resolve() == folder.resolve() or not _NAMED.search(folder.resolve().name)
+
+
 def _by_name(folder: Path, size: tuple[int, int]) -> tuple[PinholeCamera, str]:
-    found = re.search(r"freiburg([123])", folder.resolve().name)
+    found = _NAMED.search(folder.resolve().name)
     if found is None or size != _FREIBURG_SIZE:
         raise SourceError(
             f"{folder}: no intrinsics; write {_NAMES[0]} with fx, fy, cx and cy (pixels), or give "

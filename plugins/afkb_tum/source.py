@@ -157,10 +157,28 @@ def open_folder(uri: str, options: Mapping[str, str]) -> TumSource:
         raise SourceError(f"{folder}: none of the depth images it lists is a PNG that is there")
     camera, y_is_up, stated, guessed = find_calibration(folder, chosen.intrinsics, size)
     _check_stamps(folder, poses, depth, track, chosen)
-    scale = chosen.depth_scale or stated or DEPTH_SCALE
-    notes = [guessed, lost.note, *(d.note for d in broken), *_of_images(depth), *_of_poses(track)]
-    told = tuple(f"{folder.name}: {n}" for n in notes if n)
+    if y_is_up and chosen.mounted is not None:
+        raise SourceError(
+            f"{uri}: a negative fy means a camera whose y points up, and mounted a robot's camera, "
+            "whose y points down; give fy as positive, or leave mounted out"
+        )
+    units = chosen.depth_scale or stated
+    notes = [guessed, None if units or _is_benchmark(folder) else _UNITS, lost.note]
+    notes += [*(d.note for d in broken), *_of_images(depth), *_of_poses(track)]
+    told = tuple(note for note in notes if note)
+    scale = units or DEPTH_SCALE
     return TumSource(uri, folder, depth, color, track, camera, y_is_up, scale, chosen, told)
+
+
+_UNITS = (
+    f"depth is taken as {DEPTH_SCALE:g} units a metre, as TUM's is; for millimetres give "
+    "depth_scale=1000"
+)
+
+
+def _is_benchmark(folder: Path) -> bool:
+    """Whether it is named as TUM names its recordings."""
+    return "freiburg" in folder.resolve().name
 
 
 def _images(folder: Path) -> tuple[Images, Images, list[Damaged]]:

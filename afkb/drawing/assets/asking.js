@@ -1,6 +1,6 @@
 // The query box: the library, an own query, and an answer whose rows and nodes light each other up.
 
-import { element } from "./dom.js";
+import { decoded, element } from "./dom.js";
 import { ask, askJson } from "./fetching.js";
 import { letFill } from "./parameters.js";
 
@@ -59,7 +59,9 @@ export function letAsk(section, shown) {
     place.replaceChildren();
     shown().board?.light([]);
     const started = performance.now();
-    const asked = only.checked && !only.closest("label").hidden ? [shown().graph, ...KNOWN] : [];
+    // A query that tells graphs apart is about all of them.
+    const one = only.checked && !only.closest("label").hidden && !/\bGRAPH\b/i.test(box.value);
+    const asked = one ? [shown().graph, ...KNOWN] : [];
     const graphs = new URLSearchParams(asked.map((graph) => ["default-graph-uri", graph]));
     try {
       const got = await ask(`sparql?${graphs}`, { method: "POST", body: text(), signal: mine.signal,
@@ -105,10 +107,10 @@ export function letAsk(section, shown) {
   }
 
   const nodesIn = (part) => [...part.querySelectorAll("[data-node]")].map((c) => c.dataset.node);
-  const lightAll = () => shown().board.light(nodesIn(place));
+  const lightAll = () => shown().board?.light(nodesIn(place)) ?? 0;
   const over = (event) => {
     const row = event.target.closest("tbody tr");
-    if (row) shown().board.light(nodesIn(row));
+    if (row) shown().board?.light(nodesIn(row));
   };
   place.addEventListener("pointerover", over);
   place.addEventListener("focusin", over);
@@ -135,8 +137,8 @@ export function letAsk(section, shown) {
 }
 
 function nodeOf(board, base, { type, value }) {
-  if (type !== "uri" || !value.startsWith(base)) return null;
-  const id = decodeURIComponent(value.slice(base.length));
+  if (!board || type !== "uri" || !value.startsWith(base)) return null;
+  const id = decoded(value.slice(base.length));
   return board.nodes[id] ? id : null;
 }
 

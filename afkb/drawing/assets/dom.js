@@ -24,6 +24,15 @@ export function tableOf(columns, rows, caption) {
       element("tbody", {}, rows.map((row) => element("tr", {}, cells(row))))));
 }
 
+// A percent-encoded name; as it stands where that is none.
+export function decoded(text) {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}
+
 export const calm = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 export const figure = (value, digits = 2) => Number(value).toFixed(digits);

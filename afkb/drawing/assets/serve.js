@@ -53,7 +53,7 @@ async function show(name) {
       + " 0 shows the whole; a click or Enter on a node tells the evidence, Escape goes back.");
     document.querySelector(".summary").textContent = plan.summary;
     document.title = `${name}: topological affordance map`;
-    if (which.options.length > 1) history.replaceState(null, "", `?map=${encodeURIComponent(name)}`);
+    if (which.options.length > 1) history.replaceState(null, "", `?map=${encodeURIComponent(name)}${location.hash}`);
   } catch (error) {
     tell(error.message);
   }

@@ -3,6 +3,7 @@
 import { Board } from "./board.js";
 import { letChoose } from "./choosing.js";
 import { showDetails } from "./details.js";
+import { decoded } from "./dom.js";
 import { letHide } from "./layers.js";
 import { drawLinks } from "./links.js";
 import { letTimePass } from "./moments.js";
@@ -18,8 +19,11 @@ export function showPlan(section, drawing, { wheel, more = null }) {
   drawLinks(board);
   letSearch(board);
   letTimePass(board);
-  const named = () => decodeURIComponent(location.hash.slice(1));
-  addEventListener("hashchange", () => board.choose(named(), "list"));
+  const named = () => decoded(location.hash.slice(1));
+  addEventListener("hashchange", function heard() {
+    if (board.section.isConnected) board.choose(named(), "list");
+    else removeEventListener("hashchange", heard); // Another plan stands in its place.
+  });
   board.addEventListener("choose", ({ detail: { id } }) => {
     const hash = id ? `#${encodeURIComponent(id)}` : location.pathname + location.search;
     try {

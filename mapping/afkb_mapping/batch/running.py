@@ -67,11 +67,11 @@ class Batch:
             job = Job(name, settings, self.extensions, threads, self.seconds)
             try:
                 check_out(settings.out)
-                wanted = to_do(job, record) if resume else job
+                wanted = (to_do(job, record) if resume else job) or _as_it_is(job)
             except AfkbError as error:
                 yield Outcome.of(job, JobState.FAILED, error=str(error))
                 continue
-            yield wanted or _as_it_is(job)
+            yield wanted
 
     @property
     def _at_once(self) -> int:

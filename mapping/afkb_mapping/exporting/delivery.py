@@ -37,8 +37,9 @@ def deliver(
     there = next((t for t in targets.values() if os.path.lexists(t)), None)
     if there is not None and not force:
         raise MapError(f"{there}: is there already; name another --out, or replace it with --force")
-    if there is not None and there.is_dir():
-        raise MapError(f"{there}: is a folder, and a file of that name is to be written")
+    folders = (t for t in targets.values() if t.is_dir())
+    if (taken := next(folders, None)) is not None:
+        raise MapError(f"{taken}: is a folder, and a file of that name is to be written")
     for file, target in targets.items():
         target.parent.mkdir(parents=True, exist_ok=True)
         _put(file, target)

@@ -32,10 +32,17 @@ def read_color(path: Path, size: tuple[int, ...]) -> NDArray[np.uint8]:
     """Colour (H, W, 3) uint8 RGB of the same size as depth, or `BadFrame`."""
     import cv2
 
-    bgr = cv2.imdecode(np.frombuffer(path.read_bytes(), np.uint8), cv2.IMREAD_COLOR)
+    try:
+        data = np.frombuffer(path.read_bytes(), np.uint8)
+    except OSError as error:
+        raise BadFrame(f"{path.name}: {error.strerror}") from error
+    bgr = cv2.imdecode(data, cv2.IMREAD_COLOR) if len(data) else None
     if bgr is None or bgr.shape[:2] != size:
         got = "no image" if bgr is None else f"{bgr.shape[1]}x{bgr.shape[0]}"
-        raise BadFrame(f"{path.name}: {got}, registered colour has depth's {size[1]}x{size[0]}")
+        raise BadFrame(
+            f"{path.name}: {got}, registered colour has depth's {size[1]}x{size[0]}; "
+            "leave it out with the option color=none"
+        )
     return np.asarray(cv2.cvtColor(bgr, cv2.COLOR_BGR2RGB), dtype=np.uint8)
 
 

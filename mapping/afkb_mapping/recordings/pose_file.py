@@ -65,6 +65,6 @@ def lines_of(path: Path) -> Iterator[tuple[int, list[str]]]:
 def nanoseconds(text: str) -> int:
     """Stamp (ns) of seconds in words; `ValueError` where it is no time."""
     seconds = float(text)
-    if not math.isfinite(seconds) or abs(seconds) > 1e10:
+    if not math.isfinite(seconds) or abs(seconds) > 9.2e9:
         raise ValueError(text)
     return round(seconds * NS)
