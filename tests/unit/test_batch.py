@@ -9,10 +9,12 @@ import pytest
 
 from afkb.errors import MapError, SourceError
 from afkb.store import write_map
+from afkb.store.made_with import ontology_record
 from afkb_mapping.batch import watched
 from afkb_mapping.batch.done import to_do
 from afkb_mapping.batch.job import Job, JobState
 from afkb_mapping.batch.recordings import recordings
+from afkb_mapping.batch.running import Batch
 from afkb_mapping.batch.sharing import SchedulerError, outcomes
 from afkb_mapping.run_record import Settings
 from store_samples import Names, sample_map
@@ -121,3 +123,16 @@ def test_a_scheduler_that_is_not_there_is_told_of(tmp_path, monkeypatch):
     monkeypatch.setattr("afkb_mapping.batch.sharing.CONNECT_WITHIN_S", 0.3)
     with pytest.raises(SchedulerError, match="no Dask scheduler answers there"):
         list(outcomes([job(tmp_path)], 1, scheduler="tcp://127.0.0.1:9"))
+
+
+def test_a_damaged_map_among_those_that_are_there_stops_no_other(tmp_path):
+    batch = Batch([(n, Settings("world:paper_home", tmp_path / n)) for n in ("good", "damaged")])
+    record = ontology_record(batch.knowledge_base.files)
+    asked = {"stride": 1, "start": 0, "stop": None}
+    run = {"source": "world:paper_home", "parameters": asked, "ontology": record}
+    for name, _ in batch.settings:
+        write_map(tmp_path / name, sample_map(), run, [], Names())
+    (tmp_path / "damaged" / "scene.ttl").write_text("<x> <y>")
+    batch.run(resume=True)
+    states = {outcome.name: outcome.state for outcome in batch.outcomes}
+    assert states == {"good": JobState.SKIPPED, "damaged": JobState.FAILED}

@@ -359,3 +359,16 @@ def test_a_map_of_nothing_is_written_in_every_format(tmp_path: Path) -> None:
         if format_.name != "report":
             (tmp_path / str(number)).mkdir()
             assert export_map(folder, format_.name, tmp_path / str(number), host=HOST)
+
+
+def test_a_folder_in_the_way_of_the_last_file_leaves_the_first_alone(
+    folder: Path, tmp_path: Path
+) -> None:
+    files = exported(folder, tmp_path / "tables", "csv")
+    first, last = min(files), max(files)
+    first.write_text("mine")
+    last.unlink()
+    last.mkdir()
+    with pytest.raises(MapError, match="is a folder"):
+        export_map(folder, "csv", tmp_path / "tables", force=True, host=HOST)
+    assert first.read_text() == "mine"

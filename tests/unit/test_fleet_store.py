@@ -195,3 +195,13 @@ def test_the_commands_send_list_and_remove(server, oxigraph, maps):
     assert "urn:afkb:map:later" in run("list")
     assert "later: removed" in run("remove", "later")
     assert [k.name for k in kept_maps(server)] == ["kitchen"]
+
+
+def test_what_another_left_aside_unlisted_stops_no_push(server, maps):
+    statements = list(statements_of(maps[0]))
+    staging = f"urn:afkb:staging:kitchen:{digest(maps[0])[:16]}"
+    last = "\n".join(statements[-5:])
+    server.update(f"INSERT DATA {{ GRAPH <{staging}> {{ {last} }} }}")
+    assert push(server, maps[0], "kitchen").state is PushState.STORED
+    assert kept(server, "kitchen") == digest(maps[0])
+    assert staging not in graphs(server)

@@ -325,3 +325,30 @@ def test_any_text_as_a_trajectory_is_counted_or_read(tmp_path: Path, text: str) 
     path.write_text(text, encoding="utf-8")
     track = read_poses(path, Damaged(path))
     assert all(np.isfinite(track.at(s, 1.0, 1.0)).all() for s in (track.span if len(track) else ()))
+
+
+def test_an_empty_colour_image_costs_its_frame_only(folder: Path) -> None:
+    (folder / "rgb" / "1.png").write_bytes(b"")
+    frames = list(open_tum(folder).views())
+    assert [isinstance(f, SkippedFrame) for f in frames] == [False, True, False]
+    assert "color=none" in frames[1].why
+    assert len(views(folder, color="none")) == 3
+
+
+def test_another_data_sets_intrinsics_one_folder_up_are_told_or_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "camera-intrinsics.txt").write_text("30 0 8\n0 30 6\n0 0 1\n")
+    (tmp_path / "mine").mkdir()
+    mine = afkb_open_source(str(tum_folder(tmp_path / "mine")), {}, None)  # type: ignore[arg-type]
+    assert mine is not None and "one folder up" in " ".join(mine.notes)  # type: ignore[attr-defined]
+    (tmp_path / "rgbd_dataset_freiburg1_xyz").mkdir()
+    assert "no intrinsics" in bare_refusal(tum_folder(tmp_path / "rgbd_dataset_freiburg1_xyz"))
+
+
+def test_units_that_nobody_states_are_told(folder: Path) -> None:
+    assert "depth_scale=1000" in notes(folder)
+    assert "depth_scale=1000" not in notes(folder, depth_scale="5000")
+
+
+def test_a_camera_with_y_up_is_no_robots(folder: Path) -> None:
+    told = refusal(folder, intrinsics="20,-20,8,6", mounted="0,0,1,0,0,0,1")
+    assert "negative fy" in told
