@@ -37,7 +37,7 @@ def test_rows_have_numbers_names_and_truth_as_python_has_them(home: OpenMap) -> 
     (row,) = home.ask(
         "SELECT ?n ?z (COUNT(?b) AS ?beliefs) (?z > 0.5 AS ?high) ?nothing WHERE "
         "{ ?n a afn:ObservedEntity ; afn:z ?z ; afn:categoryBelief ?b FILTER(?n = scene:n1) } "
-        "GROUP BY ?n ?z"
+        "GROUP BY ?n ?z ?nothing"
     )
     assert row["n"] == "scene:n1" and isinstance(row["z"], float)
     assert type(row["beliefs"]) is int and row["high"] is True and row["nothing"] is None

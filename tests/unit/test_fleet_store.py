@@ -198,7 +198,7 @@ def test_the_commands_send_list_and_remove(server, oxigraph, maps):
 
 
 def test_what_another_left_aside_unlisted_stops_no_push(server, maps):
-    statements = list(statements_of(maps[0]))
+    statements = [text for part in portions(statements_of(maps[0])) for text in part]
     staging = f"urn:afkb:staging:kitchen:{digest(maps[0])[:16]}"
     last = "\n".join(statements[-5:])
     server.update(f"INSERT DATA {{ GRAPH <{staging}> {{ {last} }} }}")
