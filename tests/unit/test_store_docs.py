@@ -24,7 +24,7 @@ def blocks(text: str, language: str) -> list[str]:
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory: pytest.TempPathFactory) -> StoredMap:
-    folder = tmp_path_factory.mktemp("maps") / "kitchen"
+    folder = tmp_path_factory.mktemp("maps") / "demo-map"
     return load(write_map(folder, sample_map(), {}, [], Names()))
 
 
