@@ -25,6 +25,7 @@ def blocks(text: str, language: str) -> list[str]:
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory: pytest.TempPathFactory) -> StoredMap:
     folder = tmp_path_factory.mktemp("maps") / "demo-map"
+    (folder.parent / "kitchen").symlink_to("demo-map")
     return load(write_map(folder, sample_map(), {}, [], Names()))
 
 
