@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from afkb.cli.output import print_json, print_table, print_text
+from afkb.cli.output import print_json, print_table, print_text, tell
 from afkb.cli.state import state_of
 
 if TYPE_CHECKING:
     from afkb.store.named import NamedQuery
     from afkb.store.results import QueryResult
+    from afkb.store.sparql import Dataset
 
 
 class Format(StrEnum):
@@ -155,7 +156,19 @@ def _answer(
     everything = Dataset.load(stored, ontology)
     if asked.named:
         check_known(everything.store, asked.named, asked.values, everything.prefixes["scene"])
-    return within(timeout, lambda: everything.ask(sparql, graphs))
+    found = within(timeout, lambda: everything.ask(sparql, graphs))
+    if not found.rows and found.truth is None:
+        _tell_unknown(everything, sparql)
+    return found
+
+
+def _tell_unknown(everything: Dataset, sparql: str) -> None:
+    """Say which names of a query that found nothing are nobody's: a slip is likelier than none."""
+    from afkb.store.named import unknown_names
+
+    for name, near in unknown_names(everything.store, sparql):
+        hint = f"; near it: {', '.join(near)}" if near else ""
+        tell(f"note: nothing is called {name}{hint}")
 
 
 def _print_library(as_json: bool) -> None:

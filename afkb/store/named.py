@@ -143,6 +143,22 @@ def check_known(
             raise QueryError(f"{parameter.name}={name}: nothing is called that{hint}")
 
 
+def unknown_names(store: Store, sparql: str) -> list[tuple[str, list[str]]]:
+    """Names `afn:…` of a query that no statement has, each with those that are near it."""
+    asked = dict.fromkeys(re.findall(r"(?<![\w:])afn:(\w+)", sparql))
+    unknown = [name for name in asked if not _is_used(store, NamedNode(AFN + name))]
+    known = _names(store, AFN) if unknown else []
+    return [
+        (f"afn:{name}", [f"afn:{n}" for n in difflib.get_close_matches(name, known, 3)])
+        for name in unknown
+    ]
+
+
+def _is_used(store: Store, term: NamedNode) -> bool:
+    patterns = ((term, None, None), (None, term, None), (None, None, term))
+    return any(next(store.quads_for_pattern(*p), None) is not None for p in patterns)
+
+
 def _names(store: Store, base: str) -> list[str]:
     subjects = {q.subject.value for q in store if isinstance(q.subject, NamedNode)}
     return sorted(local_name(iri) for iri in subjects if iri.startswith(base))

@@ -79,3 +79,10 @@ def test_a_graph_is_named_by_its_map(home: OpenMap, tmp_path: Path) -> None:
     cli = build_cli(PluginHost())
     told = CliRunner().invoke(cli, [*asked, "--graph", "north flat: 3", count])
     assert told.stdout.split() == ["n", "2"]
+
+
+def test_a_query_that_finds_nothing_for_a_slip_says_so(home: OpenMap) -> None:
+    asked = ["query", str(home.folder), "SELECT ?r WHERE { ?r a afn:Rom }"]
+    told = CliRunner().invoke(build_cli(PluginHost()), asked)
+    assert told.exit_code == 0
+    assert "note: nothing is called afn:Rom; near it: afn:Room" in told.stderr
