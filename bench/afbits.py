@@ -82,7 +82,9 @@ def now(rows: list[Row], tables: Tables) -> Score:
 def main() -> None:
     """Print both scores of every round."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--tables", type=Path, default=Path("ontology/tables"))
+    parser.add_argument(
+        "--tables", type=Path, default=Path(__file__).parents[1] / "ontology" / "tables"
+    )
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     tables = Tables.read(arguments.tables)

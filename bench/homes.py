@@ -159,7 +159,10 @@ def evaluate(folder: Path, truth: dict, listed: list[dict] | None = None) -> dic
     rows = supports(nodes, truth)
     found = [r for r in rows if r["error_m"] is not None and r["error_m"] <= WITHIN_M]
     return {
-        "position_error_m": {"mean": round(errors.mean(), 4), "greatest": round(errors.max(), 4)},
+        "position_error_m": {
+            "mean": round(float(errors.mean()), 4),
+            "greatest": round(float(errors.max()), 4),
+        },
         "supports_found": f"{len(found)}/{len(rows)}",
         "supports_single": f"{sum(len(r['nodes']) == 1 for r in rows)}/{len(rows)}",
         "supports": rows,
@@ -182,9 +185,8 @@ def main() -> int:
         return 0
     for key, value in result.items():
         if key == "supports":
-            for row in value:
-                print("  ", row)
-        elif key == "doorways":
+            continue  # Thing by thing is what --json is for.
+        if key == "doorways":
             print(key, said(value) if value else "no list of them")
         else:
             print(key, value)

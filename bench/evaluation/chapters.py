@@ -100,7 +100,7 @@ CHAPTERS = (
     Chapter(
         "Questions in SPARQL",
         "The same queries on the same 20,000 triples, with equal answers, beside rdflib, owlready2 "
-        "and bare Oxigraph.",
+        "and Oxigraph's server.",
         (
             *_parts("bench.sparql", "peers", repeats=3),
             *_parts("bench.sparql", "library"),
@@ -120,7 +120,7 @@ CHAPTERS = (
     Chapter(
         "What maps weigh",
         "Sizes in each format, and the time to load, beside spark-dsg ([exports](exports.md)).",
-        (*_parts("bench.exports", "formats"), *_parts("bench.exports", "peers", repeats=3)),
+        _parts("bench.exports", "formats", "peers"),
     ),
     Chapter(
         "Recordings",
