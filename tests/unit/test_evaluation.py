@@ -77,7 +77,7 @@ def test_spread_is_told_in_hundredths_of_the_median() -> None:
 
 def test_what_was_not_measured_says_so(tmp_path: Path) -> None:
     assert "Not measured yet." in page(tmp_path)
-    name = next(iter(MEASUREMENTS))
+    name = "afbits"  # No headline is read from it.
     made = Result(MEASUREMENTS[name].command, (("figure 42",),), 3.0, 5.0, "abc", "2026-01-01", "m")
     replace(made, seconds=4.0).save(name, tmp_path)
     assert "figure 42" in page(tmp_path)
