@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pyoxigraph import BlankNode, Literal, NamedNode
 
 from afkb.store import QueryResult
-from afkb.store.results import Cell
+from afkb.store.results import Cell, short_iri
 
 Value = str | int | float | bool | None
 _XSD = "http://www.w3.org/2001/XMLSchema#"
@@ -39,22 +39,8 @@ def value_of(cell: Cell, prefixes: Mapping[str, str]) -> Value:
     if isinstance(cell, Literal):
         return _of_literal(cell)
     if isinstance(cell, NamedNode):
-        return next(
-            (
-                f"{p}:{cell.value[len(i) :]}"
-                for p, i in prefixes.items()
-                if cell.value.startswith(i)
-            ),
-            cell.value,
-        )
+        return short_iri(cell.value, prefixes)
     return cell.value if isinstance(cell, BlankNode) else str(cell)
-
-
-def _short(iri: str, prefixes: Mapping[str, str]) -> str:
-    for prefix, namespace in prefixes.items():
-        if iri.startswith(namespace):
-            return f"{prefix}:{iri[len(namespace) :]}"
-    return iri
 
 
 def _of_literal(cell: Literal) -> Value:

@@ -82,10 +82,8 @@ class QueryResult:
         if cell is None:
             return ""
         if isinstance(cell, NamedNode):
-            for prefix, iri in (self.prefixes or {}).items():
-                if cell.value.startswith(iri):
-                    return f"{prefix}:{cell.value[len(iri) :]}"
-        return cell.value if isinstance(cell, NamedNode | Literal | BlankNode) else str(cell)
+            return short_iri(cell.value, self.prefixes or {})
+        return cell.value if isinstance(cell, Literal | BlankNode) else str(cell)
 
     def text(self, form: str) -> str:
         """The answer as `csv`, `tsv`, `json`, `xml`, `ttl` or `nt`; triples as rows, too.
@@ -138,3 +136,11 @@ def _binding(cell: Cell) -> dict[str, str]:
     if cell.datatype.value != "http://www.w3.org/2001/XMLSchema#string":
         return binding | {"datatype": cell.datatype.value}
     return binding
+
+
+def short_iri(iri: str, prefixes: Mapping[str, str]) -> str:
+    """An IRI as a prefixed name (`afn:Mug`), or as it is where no prefix fits."""
+    for prefix, namespace in prefixes.items():
+        if iri.startswith(namespace):
+            return f"{prefix}:{iri[len(namespace) :]}"
+    return iri

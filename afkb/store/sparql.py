@@ -22,7 +22,7 @@ from afkb.store.sparql_text import (
     syntax_error,
 )
 from afkb.store.stored import StoredMap
-from afkb.store.vocabulary import PREFIXES, escaped
+from afkb.store.vocabulary import PREFIXES, map_graph
 
 _ALWAYS_THERE = {ONTOLOGY_GRAPH, INFERRED_GRAPH, BELIEVED_GRAPH}
 Answer = QuerySolutions | QueryBoolean | QueryTriples
@@ -132,7 +132,7 @@ def dataset(maps: Sequence[StoredMap], ontology: Iterable[Path] = ()) -> Store:
 
 def graph_name(folder: Path, taken: set[str]) -> str:
     """`urn:afkb:map:<folder>`; a second folder of the same name gets a number."""
-    stem = name = f"urn:afkb:map:{escaped(folder.resolve().name)}"
+    stem = name = map_graph(folder.resolve().name)
     number = 1
     while name in taken:
         number += 1

@@ -16,10 +16,9 @@ from afkb_rdf.json_ld import to_json_ld
 TURTLE, JSON_LD = "scene.ttl", "scene.jsonld"
 
 
-class TurtleExporter:
-    """The map's RDF as Turtle: scene.ttl as it stands, for any triple store."""
+class SceneWriter:
+    """What both formats share: a map that is not stored yet is written by way of its Turtle."""
 
-    name = "turtle"
     in_map_folder = False
 
     def __init__(self, names: Names) -> None:
@@ -28,9 +27,21 @@ class TurtleExporter:
     def export(
         self, topological_map: TopologicalMap, folder: Path, run: Mapping[str, object]
     ) -> Sequence[Path]:
-        """Write scene.ttl, with the parameters that `run` tells."""
+        """Write the map's statements, with the parameters that `run` tells."""
         turtle = _turtle(topological_map, self._names, run)
         return self.export_scene(turtle, folder, run)
+
+    def export_scene(
+        self, turtle: bytes, folder: Path, run: Mapping[str, object]
+    ) -> Sequence[Path]:
+        """Write the statements of a stored scene, given as its Turtle."""
+        raise NotImplementedError
+
+
+class TurtleExporter(SceneWriter):
+    """The map's RDF as Turtle: scene.ttl as it stands, for any triple store."""
+
+    name = "turtle"
 
     def export_scene(
         self, turtle: bytes, folder: Path, run: Mapping[str, object]
@@ -41,21 +52,10 @@ class TurtleExporter:
         return [path]
 
 
-class JsonLdExporter:
+class JsonLdExporter(SceneWriter):
     """The map's RDF as JSON-LD with a compact context: plain JSON to those who want that."""
 
     name = "json-ld"
-    in_map_folder = False
-
-    def __init__(self, names: Names) -> None:
-        self._names = names
-
-    def export(
-        self, topological_map: TopologicalMap, folder: Path, run: Mapping[str, object]
-    ) -> Sequence[Path]:
-        """Write scene.jsonld, with the parameters that `run` tells."""
-        turtle = _turtle(topological_map, self._names, run)
-        return self.export_scene(turtle, folder, run)
 
     def export_scene(
         self, turtle: bytes, folder: Path, run: Mapping[str, object]
